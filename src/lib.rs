@@ -1,0 +1,9 @@
+//! placeholder
+pub mod cranktrain;
+pub mod dae;
+pub mod film;
+pub mod gradient;
+pub mod laws;
+pub mod math;
+pub mod orbit;
+pub mod run;

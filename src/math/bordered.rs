@@ -1,0 +1,170 @@
+//! A cyclic band with a few dense rows and columns: film unknowns bordered by the journal's motion.
+//!
+//! ```text
+//! [ A X ] [x1]   [r1]        V = A^-1 X,  Sigma = S - K V
+//! [ K S ] [x2] = [r2]
+//! ```
+//!
+//! One band solve per right-hand side, forward or transposed. `A` may be empty (a film in closed form): then `S` is all.
+
+use super::vector::{axpy, dot};
+use super::{CyclicBand, Singular, Stencil};
+use nalgebra::DMatrix;
+
+/// Most border unknowns: journal motion with tilt, their velocities and a film temperature fit well.
+const MOST: usize = 16;
+
+/// Factorised bordered matrix. Fill [`Self::columns`], [`Self::rows`] and [`Self::corner`], then call [`Self::factor`].
+#[derive(Debug, Clone)]
+pub struct Bordered {
+    band: Option<CyclicBand>,
+    n: usize,
+    k: usize,
+    /// `X`, column by column; holds `V` after [`Self::factor`].
+    pub columns: Vec<f64>,
+    /// `K`, row by row.
+    pub rows: Vec<f64>,
+    /// `S`.
+    pub corner: DMatrix<f64>,
+    sigma_inverse: DMatrix<f64>,
+}
+
+impl Bordered {
+    /// Room for `blocks * b` band unknowns (none if `blocks` is 0) and `k` border unknowns.
+    pub fn new(blocks: usize, b: usize, k: usize) -> Self {
+        assert!(k <= MOST, "at most {MOST} border unknowns");
+        let n = blocks * b;
+        Self {
+            band: (n > 0).then(|| CyclicBand::new(blocks, b)),
+            n,
+            k,
+            columns: vec![0.0; n * k],
+            rows: vec![0.0; n * k],
+            corner: DMatrix::zeros(k, k),
+            sigma_inverse: DMatrix::zeros(k, k),
+        }
+    }
+
+    /// Number of unknowns, band and border.
+    pub fn len(&self) -> usize {
+        self.n + self.k
+    }
+
+    /// Whether there is nothing to solve.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Factorises with `a` as the band part.
+    pub fn factor(&mut self, a: &Stencil) -> Result<(), Singular> {
+        let mut sigma = self.corner.clone();
+        if let Some(band) = &mut self.band {
+            band.factor(a)?;
+            band.solve(&mut self.columns);
+            for i in 0..self.k {
+                let row = &self.rows[i * self.n..(i + 1) * self.n];
+                for j in 0..self.k {
+                    sigma[(i, j)] -= dot(row, &self.columns[j * self.n..(j + 1) * self.n]);
+                }
+            }
+        }
+        // A handful of unknowns: the inverse serves both kinds of solve without allocation.
+        self.sigma_inverse = sigma.try_inverse().ok_or(Singular(self.n))?;
+        if self.sigma_inverse.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(Singular(self.n)) }
+    }
+
+    /// `x = Sigma^-1 x`, or with the transposed matrix.
+    fn solve_corner(&self, x: &mut [f64], transposed: bool) {
+        let mut result = [0.0; MOST];
+        for (i, r) in result[..self.k].iter_mut().enumerate() {
+            let entry = |j| if transposed { self.sigma_inverse[(j, i)] } else { self.sigma_inverse[(i, j)] };
+            *r = x.iter().enumerate().map(|(j, v)| entry(j) * v).sum();
+        }
+        x.copy_from_slice(&result[..self.k]);
+    }
+
+    /// Replaces each column of `rhs` by the solution.
+    pub fn solve(&self, rhs: &mut [f64]) {
+        for x in rhs.chunks_exact_mut(self.len()) {
+            let (x1, x2) = x.split_at_mut(self.n);
+            if let Some(band) = &self.band {
+                band.solve(x1);
+                for (i, v) in x2.iter_mut().enumerate() {
+                    *v -= dot(&self.rows[i * self.n..(i + 1) * self.n], x1);
+                }
+            }
+            self.solve_corner(x2, false);
+            for (j, v) in x2.iter().enumerate() {
+                axpy(x1, -v, &self.columns[j * self.n..(j + 1) * self.n]);
+            }
+        }
+    }
+
+    /// Replaces each column of `rhs` by the solution of the transposed system.
+    pub fn solve_transposed(&self, rhs: &mut [f64]) {
+        for x in rhs.chunks_exact_mut(self.len()) {
+            let (x1, x2) = x.split_at_mut(self.n);
+            for (j, v) in x2.iter_mut().enumerate() {
+                *v -= dot(&self.columns[j * self.n..(j + 1) * self.n], x1);
+            }
+            self.solve_corner(x2, true);
+            if let Some(band) = &self.band {
+                for (i, v) in x2.iter().enumerate() {
+                    axpy(x1, -v, &self.rows[i * self.n..(i + 1) * self.n]);
+                }
+                band.solve_transposed(x1);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ring of 4 x 2 unknowns bordered by 3, as the solver takes it and as a dense matrix.
+    fn example() -> (Bordered, Stencil, DMatrix<f64>) {
+        let (n, k) = (8, 3);
+        let mut system = Bordered::new(4, 2, k);
+        let mut a = Stencil::zeros(n);
+        let mut dense = DMatrix::from_fn(n + k, n + k, |i, j| ((3 * i + 5 * j) as f64).sin());
+        dense.view_mut((0, 0), (n, n)).fill(0.0);
+        (n..n + k).for_each(|i| dense[(i, i)] += 4.0);
+        for r in 0..n {
+            a.diagonal[r] = 5.0 + r as f64;
+            a.west[r] = -1.0 - 0.1 * r as f64;
+            a.east[r] = -0.5;
+            dense[(r, r)] = a.diagonal[r];
+            dense[(r, (r + 6) % n)] = a.west[r];
+            dense[(r, (r + 2) % n)] = a.east[r];
+        }
+        for i in 0..k {
+            for r in 0..n {
+                system.columns[i * n + r] = dense[(r, n + i)];
+                system.rows[i * n + r] = dense[(n + i, r)];
+            }
+        }
+        system.corner.copy_from(&dense.view((n, n), (k, k)));
+        (system, a, dense)
+    }
+
+    #[test]
+    fn agrees_with_a_dense_solver_both_ways() {
+        let (mut system, a, dense) = example();
+        system.factor(&a).unwrap();
+        let truth = nalgebra::DVector::from_fn(11, |i, _| i as f64 - 4.0);
+        let mut x: Vec<f64> = (&dense * &truth).iter().copied().collect();
+        let mut y: Vec<f64> = (dense.transpose() * &truth).iter().copied().collect();
+        system.solve(&mut x);
+        system.solve_transposed(&mut y);
+        for i in 0..11 {
+            assert!((x[i] - truth[i]).abs() < 1e-11 && (y[i] - truth[i]).abs() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn a_singular_corner_is_reported() {
+        let mut system = Bordered::new(0, 0, 2);
+        assert!(system.factor(&Stencil::zeros(0)).is_err());
+    }
+}

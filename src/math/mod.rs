@@ -1,0 +1,14 @@
+//! Algebra that every floor above needs: a periodic spline, the cyclic band solver of the film, smooth extrema.
+//!
+//! Deliberately not here: anything that knows what a bearing is. Small dense systems use nalgebra directly.
+
+mod band;
+mod bordered;
+mod power_mean;
+mod spline;
+mod vector;
+
+pub use band::{CyclicBand, Singular, Stencil};
+pub use bordered::Bordered;
+pub use power_mean::PowerMean;
+pub use spline::{PeriodicSpline, SplineError};

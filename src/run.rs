@@ -1,0 +1,135 @@
+//! What a long computation shares with whoever started it: cancellation, progress, threads and counted work.
+//!
+//! Nothing here measures time; costs are counts, so that they can be tested and compared between machines.
+
+use serde::{Deserialize, Serialize};
+use std::ops::{Add, AddAssign};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use thiserror::Error;
+
+/// A flag that asks a computation to stop at its next safe place.
+#[derive(Debug, Clone, Default)]
+pub struct Cancel(Arc<AtomicBool>);
+
+/// The computation was asked to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("cancelled")]
+pub struct Cancelled;
+
+impl Cancel {
+    /// Asks every computation that holds this flag to stop.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether a stop was asked for.
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Fails if a stop was asked for.
+    pub fn check(&self) -> Result<(), Cancelled> {
+        if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    }
+}
+
+/// News of a running computation.
+#[derive(Debug, Clone, Serialize)]
+#[serde(tag = "event", rename_all = "kebab-case")]
+pub enum Event {
+    /// A new stage of the run began.
+    Stage {
+        /// What is done now, in words.
+        name: String,
+    },
+    /// One design was simulated.
+    Simulated {
+        /// Designs simulated so far.
+        simulations: u64,
+        /// Objective in watts, if the simulation succeeded.
+        objective_w: Option<f64>,
+    },
+    /// The optimiser accepted a design.
+    Iteration(IterationEvent),
+}
+
+/// One accepted design of an optimisation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct IterationEvent {
+    /// Counter, 0 for the start.
+    pub iteration: u64,
+    /// Objective in watts.
+    pub objective_w: f64,
+    /// Largest scaled constraint violation.
+    pub violation: f64,
+    /// Scaled Karush-Kuhn-Tucker residual.
+    pub kkt: f64,
+    /// Step length in the unit box.
+    pub step: f64,
+    /// Designs simulated so far.
+    pub simulations: u64,
+}
+
+/// Receives the events of a run; called from the thread that runs it.
+pub trait Progress: Sync {
+    /// Takes one piece of news.
+    fn tell(&self, event: &Event);
+}
+
+/// Takes no notice.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn tell(&self, _: &Event) {}
+}
+
+/// What every long computation is given.
+#[derive(Clone, Copy)]
+pub struct RunContext<'a> {
+    /// Ask here whether to go on.
+    pub cancel: &'a Cancel,
+    /// Tell the news here.
+    pub progress: &'a dyn Progress,
+}
+
+/// Work done, counted.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Cost {
+    /// Settled working cycles computed.
+    pub simulations: u64,
+    /// Time steps taken, settling included.
+    pub steps: u64,
+    /// Newton iterations of all steps.
+    pub newton_iterations: u64,
+    /// Matrix factorisations.
+    pub factorisations: u64,
+    /// Solves with a factorised matrix, one per right-hand side.
+    pub solves: u64,
+}
+
+impl Add for Cost {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        Self {
+            simulations: self.simulations + o.simulations,
+            steps: self.steps + o.steps,
+            newton_iterations: self.newton_iterations + o.newton_iterations,
+            factorisations: self.factorisations + o.factorisations,
+            solves: self.solves + o.solves,
+        }
+    }
+}
+
+impl AddAssign for Cost {
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+
+impl std::iter::Sum for Cost {
+    fn sum<I: Iterator<Item = Self>>(iter: I) -> Self {
+        iter.fold(Self::default(), Add::add)
+    }
+}
