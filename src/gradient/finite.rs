@@ -1,0 +1,74 @@
+//! FW, BW, CEN: differences of settled quantities with relative perturbation `eps_p`.
+
+use super::{EngineName, GradientEngine, GradientError, GradientTable};
+use crate::dae::SensitiveDae;
+use crate::orbit::{Orbit, OrbitOptions, Quantity, settle};
+use crate::run::{Cancel, Cost};
+
+/// Which points a difference uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Difference {
+    /// `p + h` and `p`.
+    Forward,
+    /// `p` and `p - h`.
+    Backward,
+    /// `p + h` and `p - h`.
+    Central,
+}
+
+/// Finite differences with step `h = eps_p |p|` (or `eps_p` where `p` is zero).
+#[derive(Debug, Clone, Copy)]
+pub struct FiniteDifference {
+    /// Points used.
+    pub difference: Difference,
+    /// Relative perturbation.
+    pub perturbation: f64,
+}
+
+impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
+    fn name(&self) -> EngineName {
+        match self.difference {
+            Difference::Forward => EngineName::Fw,
+            Difference::Backward => EngineName::Bw,
+            Difference::Central => EngineName::Cen,
+        }
+    }
+
+    fn gradient(
+        &self,
+        model: &M,
+        at: &Orbit,
+        options: &OrbitOptions,
+        of: &[Quantity],
+        cancel: &Cancel,
+    ) -> Result<GradientTable, GradientError> {
+        let p = model.parameters();
+        let mut table = GradientTable {
+            rows: vec![vec![0.0; p.len()]; of.len()],
+            sweeps: 0.0,
+            closure: 0.0,
+            cost: Cost::default(),
+        };
+        let here: Vec<f64> = of.iter().map(|q| at.value(q)).collect();
+        for j in 0..p.len() {
+            let step = self.perturbation * if p[j] != 0.0 { p[j].abs() } else { 1.0 };
+            let mut settled = |sign: f64| -> Result<Vec<f64>, GradientError> {
+                let mut shifted = p.to_vec();
+                shifted[j] += sign * step;
+                let orbit = settle(&model.with_parameters(&shifted)?, options, Some(at), cancel)?;
+                table.cost += orbit.cost;
+                table.sweeps += orbit.cycles;
+                Ok(of.iter().map(|q| orbit.value(q)).collect())
+            };
+            let (plus, minus, width) = match self.difference {
+                Difference::Forward => (settled(1.0)?, here.clone(), step),
+                Difference::Backward => (here.clone(), settled(-1.0)?, step),
+                Difference::Central => (settled(1.0)?, settled(-1.0)?, 2.0 * step),
+            };
+            for (row, (plus, minus)) in table.rows.iter_mut().zip(plus.iter().zip(&minus)) {
+                row[j] = (plus - minus) / width;
+            }
+        }
+        Ok(table)
+    }
+}

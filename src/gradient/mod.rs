@@ -1,0 +1,154 @@
+//! Gradients of cycle quantities with respect to all parameters, by five engines behind one trait.
+//!
+//! | engine | what it computes | cost in simulations for `n_p` parameters, `n_q` quantities | accuracy |
+//! |---|---|---|---|
+//! | FW, BW | forward, backward difference of the settled quantity | `n_p` | about `eps_p` |
+//! | CEN | central difference | `2 n_p` | about `eps_p^2`, limited by rounding |
+//! | TRA | tangent equations marched along the orbit | one linear solve per step and parameter | exact |
+//! | ADJ | discrete adjoint, marched backwards | one linear solve per step and quantity | exact |
+//!
+//! *Exact* means exact for the discrete periodic model: TRA and ADJ agree to rounding. Use ADJ by default, TRA if there
+//! are fewer parameters than quantities, the differences to check the others. All see the periodic start state change
+//! with the design: the differences by settling anew, TRA and ADJ by sweeping on until the carried memory has died out.
+//!
+//! Quantities are piecewise smooth where cells enter or leave the cavity; the gradient is that of the current piece.
+//! Deliberately not here: which parameters and quantities a study asks for.
+
+mod adjoint;
+mod finite;
+mod taylor;
+mod transient;
+
+pub use adjoint::Adjoint;
+pub use finite::{Difference, FiniteDifference};
+pub use taylor::{TaylorRow, taylor_table};
+pub use transient::Transient;
+
+use crate::dae::{InvalidParameters, SensitiveDae};
+use crate::math::Singular;
+use crate::orbit::{Orbit, OrbitError, OrbitOptions, Quantity};
+use crate::run::{Cancel, Cancelled, Cost};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Memory below this share of its start counts as gone.
+const CLOSED: f64 = 1e-14;
+/// Sweeps over the cycle after which a memory is declared not to fade.
+const MOST_SWEEPS: usize = 50;
+
+/// Name of a gradient engine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum EngineName {
+    /// Forward differences.
+    Fw,
+    /// Backward differences.
+    Bw,
+    /// Central differences.
+    Cen,
+    /// Transient approach (forward sensitivity).
+    Tra,
+    /// Discrete adjoint.
+    Adj,
+}
+
+impl EngineName {
+    /// All engines.
+    pub const ALL: [Self; 5] = [Self::Fw, Self::Bw, Self::Cen, Self::Tra, Self::Adj];
+
+    /// The name in capitals.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Fw => "FW",
+            Self::Bw => "BW",
+            Self::Cen => "CEN",
+            Self::Tra => "TRA",
+            Self::Adj => "ADJ",
+        }
+    }
+}
+
+/// The engine of a name; `perturbation` is the relative step `eps_p` of the differences.
+pub fn engine<M: SensitiveDae>(name: EngineName, perturbation: f64) -> Box<dyn GradientEngine<M>> {
+    let finite = |difference| Box::new(FiniteDifference { difference, perturbation });
+    match name {
+        EngineName::Fw => finite(Difference::Forward),
+        EngineName::Bw => finite(Difference::Backward),
+        EngineName::Cen => finite(Difference::Central),
+        EngineName::Tra => Box::new(Transient),
+        EngineName::Adj => Box::new(Adjoint),
+    }
+}
+
+/// Derivatives of quantities (rows) by parameters (columns), SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GradientTable {
+    /// One row per quantity, one entry per parameter.
+    pub rows: Vec<Vec<f64>>,
+    /// Sweeps over the cycle (settled cycles for the differences).
+    pub sweeps: f64,
+    /// Share of the memory that was left when sweeping stopped; 0 for the differences.
+    pub closure: f64,
+    /// Work done, the simulation at the point itself not included.
+    pub cost: Cost,
+}
+
+/// Why there is no gradient.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum GradientError {
+    /// A perturbed simulation failed.
+    #[error("a perturbed simulation failed: {0}")]
+    Orbit(#[from] OrbitError),
+    /// A perturbed design does not exist.
+    #[error("a perturbed design does not exist: {0}")]
+    Parameters(#[from] InvalidParameters),
+    /// A step matrix collapsed.
+    #[error(transparent)]
+    Singular(#[from] Singular),
+    /// The memory of the orbit does not fade: it is not stable.
+    #[error("the sensitivity does not become periodic within {MOST_SWEEPS} sweeps: the orbit is not stable")]
+    NotClosed,
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// One way to a gradient.
+pub trait GradientEngine<M: SensitiveDae>: Send + Sync {
+    /// Which one.
+    fn name(&self) -> EngineName;
+
+    /// Derivatives of the quantities `of` at the settled cycle `at` of `model`.
+    fn gradient(
+        &self,
+        model: &M,
+        at: &Orbit,
+        options: &OrbitOptions,
+        of: &[Quantity],
+        cancel: &Cancel,
+    ) -> Result<GradientTable, GradientError>;
+}
+
+/// Follows a memory that sweeps over the cycle until it has faded.
+struct Closure {
+    largest: f64,
+    last: [f64; 2],
+}
+
+impl Closure {
+    fn new() -> Self {
+        Self { largest: 0.0, last: [f64::INFINITY; 2] }
+    }
+
+    /// Takes the size of the memory after a step.
+    fn note(&mut self, size: f64) {
+        self.largest = self.largest.max(size);
+        self.last = [size, self.last[0]];
+    }
+
+    /// Share of the memory left. Two steps must agree, as the difference formula looks back twice.
+    fn left(&self) -> f64 {
+        let now = self.last[0].max(self.last[1]);
+        if self.largest > 0.0 { now / self.largest } else { 0.0 }
+    }
+}
