@@ -5,5 +5,6 @@ pub mod film;
 pub mod gradient;
 pub mod laws;
 pub mod math;
+pub mod optimise;
 pub mod orbit;
 pub mod run;

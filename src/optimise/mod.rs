@@ -1,0 +1,24 @@
+//! Which design next: constrained optimisation driven by exact gradients.
+//!
+//! ```text
+//! minimise f(x)   subject to   c(x) <= 0,   g(x) = 0,   lower <= x <= upper
+//! ```
+//!
+//! [`Sqp`] is an argmin solver (sequential quadratic programming, Nocedal and Wright 2006, ch. 18) whose sub-problem
+//! Clarabel solves. [`DesignProblem`] makes such a problem of bearings: it simulates every case, remembers what it
+//! simulated and asks a gradient engine for all rows at once. [`minimise`] joins the two.
+//!
+//! Ending is data, not an error: see [`Outcome`]. Deliberately not here: units, files, words for reports.
+
+mod design;
+mod outcome;
+mod problem;
+mod qp;
+mod sqp;
+mod state;
+
+pub use design::{Case, DesignProblem, Evaluated, Limit, Sense};
+pub use outcome::Outcome;
+pub use problem::{ConstrainedProblem, EvaluationError, Slopes, Values};
+pub use sqp::{Minimum, Sqp, SqpOptions, minimise};
+pub use state::{Multipliers, SqpState};

@@ -1,0 +1,52 @@
+//! How an optimisation ended.
+
+use serde::{Deserialize, Serialize};
+
+/// Reason why the optimiser stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Outcome {
+    /// A KKT point within the tolerance.
+    Converged,
+    /// No further progress, but close to a KKT point and feasible.
+    AlmostConverged,
+    /// The iterations asked for are used up.
+    IterationLimit,
+    /// No step improves the design, far from a KKT point.
+    NoProgress,
+    /// No design in the box meets the constraints, as far as the linearisations tell.
+    Infeasible,
+    /// The start design could not be simulated.
+    StartFailed,
+    /// Stopped from outside.
+    Cancelled,
+}
+
+impl Outcome {
+    /// What an engineer can do about it.
+    pub fn advice(self) -> &'static str {
+        match self {
+            Self::Converged => {
+                "The design meets the optimality conditions within the tolerance. Look at the active constraints and \
+                 parameters at bounds: they limit the design."
+            }
+            Self::AlmostConverged => {
+                "The design is feasible and close to the optimum, but the objective is no longer smooth at this scale. \
+                 Loosen optimiser.tolerance, refine the film mesh or use more steps per cycle."
+            }
+            Self::IterationLimit => "Raise optimiser.max_iterations, or start from this design.",
+            Self::NoProgress => {
+                "Check the gradient with 'stribeck gradient FILE --engine all'; use the adjoint engine, more steps per \
+                 cycle or a finer film mesh, or start from another design."
+            }
+            Self::Infeasible => {
+                "No design in the box meets all constraints. The constraint list shows by how much each is missed; widen \
+                 the box or relax the worst one."
+            }
+            Self::StartFailed => {
+                "The start design cannot be simulated. Start with more clearance, a larger bearing or more steps per cycle."
+            }
+            Self::Cancelled => "Stopped on request; the best design found so far is reported.",
+        }
+    }
+}

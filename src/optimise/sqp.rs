@@ -1,0 +1,524 @@
+//! Sequential quadratic programming with damped BFGS, an l1 merit function and second-order correction.
+//!
+//! Each iteration solves one sub-problem ([`super::qp`]) for a step `d` and multipliers, then searches along `d` on
+//! `f + mu (sum max(c, 0) + sum |g|)`; if the full step is refused because the constraints curve, it is corrected once with
+//! their values there. A point that cannot be evaluated counts as a refused trial: the step is halved. Gradients are asked
+//! at accepted points only. The Hessian follows Powell's damped BFGS update (1978) and starts from the scaled unit matrix.
+//!
+//! The KKT residual is the largest of `|grad L|`, `|lambda c|` and the violation, in scaled variables and with the
+//! objective divided by its start value.
+
+use super::problem::Scaled;
+use super::qp::{Qp, QpSolution};
+use super::state::Iterate;
+use super::{ConstrainedProblem, EvaluationError, Multipliers, Outcome, Slopes, SqpState, Values};
+use crate::run::IterationEvent;
+use argmin::core::{Error, Executor, KV, Problem, Solver, State, TerminationStatus};
+use nalgebra::{DMatrix, DVector};
+
+/// Share of the predicted decrease that a step must achieve (Armijo).
+const ARMIJO: f64 = 1e-4;
+/// Shortest step tried.
+const SHORTEST: f64 = 1e-7;
+/// Rounding of the merit function that a search must not stumble over.
+const ROUNDING: f64 = 1e-12;
+/// Powell's damping.
+const DAMPING: f64 = 0.2;
+
+/// Settings of the optimiser.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SqpOptions {
+    /// KKT residual (scaled) at which the design counts as optimal.
+    pub tolerance: f64,
+    /// Iterations at most.
+    pub max_iterations: u64,
+    /// Longest change of a scaled variable in one iteration.
+    pub step_limit: f64,
+}
+
+impl Default for SqpOptions {
+    fn default() -> Self {
+        Self { tolerance: 1e-6, max_iterations: 60, step_limit: 0.4 }
+    }
+}
+
+/// End of an optimisation, in true variables.
+#[derive(Debug, Clone)]
+pub struct Minimum {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Best point: feasible if any was, then of lowest objective.
+    pub x: Vec<f64>,
+    /// Values there; `None` if the start could not be evaluated.
+    pub values: Option<Values>,
+    /// Multipliers at the last iterate: objective units per unit of constraint (bounds: per unit of variable in its box).
+    pub multipliers: Multipliers,
+    /// KKT residual at the last iterate.
+    pub kkt: f64,
+    /// Accepted points.
+    pub history: Vec<IterationEvent>,
+    /// Reasons of refused evaluations.
+    pub failures: Vec<String>,
+    /// Evaluations asked of the problem.
+    pub evaluations: u64,
+    /// Gradients asked of the problem.
+    pub gradients: u64,
+}
+
+/// The argmin solver.
+pub struct Sqp {
+    options: SqpOptions,
+}
+
+impl Sqp {
+    /// A solver with the given settings.
+    pub fn new(options: SqpOptions) -> Self {
+        Self { options }
+    }
+}
+
+/// What argmin carries for the solver.
+struct Operator<'p, P: ?Sized> {
+    scaled: Scaled<'p, P>,
+}
+
+/// Minimises a problem from a start; the start is moved into the bounds if it lies outside.
+pub fn minimise<P: ConstrainedProblem + ?Sized>(
+    problem: &P,
+    start: &[f64],
+    options: SqpOptions,
+) -> Result<Minimum, Error> {
+    let mut scaled = Scaled::new(problem, start);
+    let s = scaled.to_scaled(start);
+    if let Ok(values) = scaled.values(&s) {
+        scaled.objective_scale = values.objective.abs().max(f64::MIN_POSITIVE);
+        if values.objective.abs() < 1e-8 {
+            scaled.objective_scale = 1.0;
+        }
+    }
+    let scale = scaled.objective_scale;
+    let result = Executor::new(Operator { scaled }, Sqp::new(options))
+        .configure(|state: SqpState| state.start(s.clone()).max_iters(options.max_iterations))
+        .ctrlc(false)
+        .run()?;
+    let state = result.state;
+    let operator = result.problem.problem.ok_or_else(|| Error::msg("argmin lost the problem"))?;
+    let (x, values) = match state.incumbent {
+        Some((x, values)) => (x, Some(values)),
+        None => (s, None),
+    };
+    let count = |name: &str| result.problem.counts.get(name).copied().unwrap_or(0);
+    let restore = |v: Vec<f64>| v.into_iter().map(|m| m * scale).collect();
+    Ok(Minimum {
+        outcome: state.outcome.unwrap_or(Outcome::IterationLimit),
+        x: operator.scaled.to_true(&x),
+        values: values.map(|v| Values { objective: v.objective * scale, ..v }),
+        multipliers: Multipliers {
+            inequalities: restore(state.multipliers.inequalities),
+            equalities: restore(state.multipliers.equalities),
+            lower: restore(state.multipliers.lower),
+            upper: restore(state.multipliers.upper),
+        },
+        kkt: state.kkt,
+        history: state.history,
+        failures: state.failures,
+        evaluations: count("evaluations"),
+        gradients: count("gradients"),
+    })
+}
+
+type Problems<'p, P> = Problem<Operator<'p, P>>;
+
+impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for Sqp {
+    fn name(&self) -> &str {
+        "SQP"
+    }
+
+    fn init(
+        &mut self,
+        problem: &mut Problems<'p, P>,
+        mut state: SqpState,
+    ) -> Result<(SqpState, Option<KV>), Error> {
+        let x = state.start_point().ok_or_else(|| Error::msg("no start"))?.to_vec();
+        let n = x.len();
+        state.hessian = DMatrix::identity(n, n);
+        let values = match evaluate(problem, &x) {
+            Ok(values) => values,
+            Err(e) => return Ok((refuse(state, e, Outcome::StartFailed), None)),
+        };
+        match differentiate(problem, &x) {
+            Ok(slopes) => state.iterate = Some(Iterate { x, values, slopes }),
+            Err(e) => return Ok((refuse(state, e, Outcome::StartFailed), None)),
+        }
+        state.remember(self.options.tolerance);
+        Ok((state, None))
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problems<'p, P>,
+        mut state: SqpState,
+    ) -> Result<(SqpState, Option<KV>), Error> {
+        let Some(now) = state.iterate.clone() else { return Ok((state.end(Outcome::StartFailed), None)) };
+        let Some(qp) = self.sub_problem(problem, &now, &state.hessian, &now.values) else {
+            return Ok((self.give_up(state), None));
+        };
+        state.kkt = kkt(&now, &state.hessian, &qp);
+        state.multipliers = qp.multipliers.clone();
+        report(problem, &mut state, &now);
+        if state.kkt <= self.options.tolerance {
+            return Ok((state.end(Outcome::Converged), None));
+        }
+        let size = qp.step.iter().fold(0.0f64, |a, d| a.max(d.abs()));
+        if qp.elastic && size < 1e-8 && now.values.violation() > self.options.tolerance {
+            return Ok((state.end(Outcome::Infeasible), None));
+        }
+        let largest = qp
+            .multipliers
+            .inequalities
+            .iter()
+            .chain(&qp.multipliers.equalities)
+            .fold(0.0f64, |a, m| a.max(m.abs()));
+        state.penalty = state.penalty.max(1.5 * largest).max(1e-3);
+        match self.search(problem, &mut state, &now, &qp) {
+            Err(EvaluationError::Cancelled) => Ok((state.end(Outcome::Cancelled), None)),
+            Err(EvaluationError::Failed(_)) if !state.fresh_hessian => {
+                // The curvature may be stale: try once more along the steepest descent.
+                state.hessian.fill_with_identity();
+                state.fresh_hessian = true;
+                Ok((state, None))
+            }
+            Err(EvaluationError::Failed(_)) => Ok((self.give_up(state), None)),
+            Ok((x, values)) => match differentiate(problem, &x) {
+                Err(e) => Ok((refuse(state, e, Outcome::NoProgress), None)),
+                Ok(slopes) => {
+                    let next = Iterate { x, values, slopes };
+                    update_hessian(&mut state, &now, &next);
+                    state.last_step = next.x.iter().zip(&now.x).fold(0.0, |a, (b, c)| a.max((b - c).abs()));
+                    state.iterate = Some(next);
+                    state.remember(self.options.tolerance);
+                    Ok((state, None))
+                }
+            },
+        }
+    }
+
+    fn terminate_internal(&mut self, state: &SqpState) -> TerminationStatus {
+        if state.terminated() {
+            return state.get_termination_status().clone();
+        }
+        if state.get_iter() >= state.get_max_iters() {
+            return TerminationStatus::Terminated(argmin::core::TerminationReason::MaxItersReached);
+        }
+        TerminationStatus::NotTerminated
+    }
+}
+
+impl Sqp {
+    fn sub_problem<P: ConstrainedProblem + ?Sized>(
+        &self,
+        problem: &mut Problems<'_, P>,
+        now: &Iterate,
+        hessian: &DMatrix<f64>,
+        values: &Values,
+    ) -> Option<QpSolution> {
+        let scaled = &problem.problem.as_ref()?.scaled;
+        let limit = self.options.step_limit;
+        let lower: Vec<f64> = now.x.iter().zip(&scaled.lower).map(|(x, l)| (l - x).max(-limit)).collect();
+        let upper: Vec<f64> = now.x.iter().zip(&scaled.upper).map(|(x, u)| (u - x).min(limit)).collect();
+        Qp { hessian, values, slopes: &now.slopes, lower: &lower, upper: &upper }.solve()
+    }
+
+    /// Searches along the step; returns an accepted point, or `Failed` if there is none.
+    fn search<P: ConstrainedProblem + ?Sized>(
+        &self,
+        problem: &mut Problems<'_, P>,
+        state: &mut SqpState,
+        now: &Iterate,
+        qp: &QpSolution,
+    ) -> Result<(Vec<f64>, Values), EvaluationError> {
+        let mu = state.penalty;
+        let merit = |v: &Values| v.objective + mu * v.total_violation();
+        let here = merit(&now.values);
+        let slope = dot(&now.slopes.objective, &qp.step)
+            - mu * (now.values.total_violation() - linearised(now, &qp.step).total_violation());
+        let enough = |v: &Values, share: f64| {
+            merit(v) <= here + ARMIJO * share * slope.min(0.0) + ROUNDING * here.abs()
+        };
+        let mut share = 1.0;
+        while share >= SHORTEST {
+            let x = moved(problem, &now.x, &qp.step, share);
+            match evaluate(problem, &x) {
+                Err(EvaluationError::Cancelled) => return Err(EvaluationError::Cancelled),
+                Err(EvaluationError::Failed(reason)) => {
+                    state.failures.push(reason);
+                    share *= 0.5;
+                }
+                Ok(values) if enough(&values, share) => return Ok((x, values)),
+                Ok(values) => {
+                    if share == 1.0 && values.total_violation() > now.values.total_violation() {
+                        if let Some(found) = self.corrected(problem, state, now, qp, &values, &enough)? {
+                            return Ok(found);
+                        }
+                    }
+                    // Minimum of the parabola through both merits and the slope.
+                    let rise = merit(&values) - here - share * slope;
+                    let best = if rise > 0.0 { -0.5 * slope * share * share / rise } else { 0.5 * share };
+                    share = best.clamp(0.1 * share, 0.5 * share);
+                }
+            }
+        }
+        Err(EvaluationError::Failed("no step along the search direction improves the design".into()))
+    }
+
+    /// Second-order correction: the step again, with the constraints as they really are at its end.
+    fn corrected<P: ConstrainedProblem + ?Sized>(
+        &self,
+        problem: &mut Problems<'_, P>,
+        state: &SqpState,
+        now: &Iterate,
+        qp: &QpSolution,
+        there: &Values,
+        enough: &dyn Fn(&Values, f64) -> bool,
+    ) -> Result<Option<(Vec<f64>, Values)>, EvaluationError> {
+        let shifted = |rows: &[Vec<f64>], values: &[f64]| -> Vec<f64> {
+            rows.iter().zip(values).map(|(row, c)| c - dot(row, &qp.step)).collect()
+        };
+        let values = Values {
+            objective: now.values.objective,
+            inequalities: shifted(&now.slopes.inequalities, &there.inequalities),
+            equalities: shifted(&now.slopes.equalities, &there.equalities),
+        };
+        let Some(again) = self.sub_problem(problem, now, &state.hessian, &values) else { return Ok(None) };
+        let x = moved(problem, &now.x, &again.step, 1.0);
+        match evaluate(problem, &x) {
+            Ok(values) if enough(&values, 1.0) => Ok(Some((x, values))),
+            Err(EvaluationError::Cancelled) => Err(EvaluationError::Cancelled),
+            _ => Ok(None),
+        }
+    }
+
+    /// Names the end of a run that cannot go on.
+    fn give_up(&self, state: SqpState) -> SqpState {
+        let violation = state.iterate.as_ref().map_or(f64::INFINITY, |i| i.values.violation());
+        let close = state.kkt <= 1e3 * self.options.tolerance && violation <= 10.0 * self.options.tolerance;
+        state.end(if close { Outcome::AlmostConverged } else { Outcome::NoProgress })
+    }
+}
+
+fn evaluate<P: ConstrainedProblem + ?Sized>(
+    problem: &mut Problems<'_, P>,
+    x: &[f64],
+) -> Result<Values, EvaluationError> {
+    let mut refused = None;
+    let result = problem.problem("evaluations", |o| o.scaled.values(x).map_err(|e| note(&mut refused, e)));
+    result.map_err(|_| refused.unwrap_or(EvaluationError::Cancelled))
+}
+
+fn differentiate<P: ConstrainedProblem + ?Sized>(
+    problem: &mut Problems<'_, P>,
+    x: &[f64],
+) -> Result<Slopes, EvaluationError> {
+    let mut refused = None;
+    let result = problem.problem("gradients", |o| o.scaled.slopes(x).map_err(|e| note(&mut refused, e)));
+    result.map_err(|_| refused.unwrap_or(EvaluationError::Cancelled))
+}
+
+/// argmin wants its own error type; the reason is kept beside it.
+fn note(slot: &mut Option<EvaluationError>, e: EvaluationError) -> Error {
+    let text = e.to_string();
+    *slot = Some(e);
+    Error::msg(text)
+}
+
+fn refuse(mut state: SqpState, e: EvaluationError, otherwise: Outcome) -> SqpState {
+    match e {
+        EvaluationError::Cancelled => state.end(Outcome::Cancelled),
+        EvaluationError::Failed(reason) => {
+            state.failures.push(reason);
+            state.end(otherwise)
+        }
+    }
+}
+
+fn report<P: ConstrainedProblem + ?Sized>(problem: &Problems<'_, P>, state: &mut SqpState, now: &Iterate) {
+    let Some(operator) = &problem.problem else { return };
+    let news = IterationEvent {
+        iteration: state.get_iter(),
+        objective_w: now.values.objective * operator.scaled.objective_scale,
+        violation: now.values.violation(),
+        kkt: state.kkt,
+        step: state.last_step,
+        simulations: problem.counts.get("evaluations").copied().unwrap_or(0),
+    };
+    operator.scaled.problem.accepted(&news);
+    state.history.push(news);
+}
+
+/// `x + share * step`, inside the bounds.
+fn moved<P: ConstrainedProblem + ?Sized>(
+    problem: &Problems<'_, P>,
+    x: &[f64],
+    step: &[f64],
+    share: f64,
+) -> Vec<f64> {
+    let bounds = problem.problem.as_ref().map(|o| (&o.scaled.lower, &o.scaled.upper));
+    (0..x.len())
+        .map(|j| {
+            let to = x[j] + share * step[j];
+            bounds.map_or(to, |(low, high)| to.clamp(low[j], high[j]))
+        })
+        .collect()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Values of the linear model after a step.
+fn linearised(now: &Iterate, step: &[f64]) -> Values {
+    let after =
+        |rows: &[Vec<f64>], values: &[f64]| rows.iter().zip(values).map(|(r, v)| v + dot(r, step)).collect();
+    Values {
+        objective: now.values.objective + dot(&now.slopes.objective, step),
+        inequalities: after(&now.slopes.inequalities, &now.values.inequalities),
+        equalities: after(&now.slopes.equalities, &now.values.equalities),
+    }
+}
+
+/// Gradient of the Lagrangian without the bounds.
+fn lagrangian(slopes: &Slopes, multipliers: &Multipliers) -> DVector<f64> {
+    let mut g = DVector::from_column_slice(&slopes.objective);
+    let rows = slopes.inequalities.iter().zip(&multipliers.inequalities);
+    for (row, m) in rows.chain(slopes.equalities.iter().zip(&multipliers.equalities)) {
+        g += DVector::from_column_slice(row) * *m;
+    }
+    g
+}
+
+/// Largest of stationarity, complementarity and violation at a point, with the multipliers of its sub-problem.
+///
+/// A bound's multiplier only counts if the point stands on the bound; otherwise it belongs to the step.
+fn kkt(now: &Iterate, hessian: &DMatrix<f64>, qp: &QpSolution) -> f64 {
+    // Stationarity of the sub-problem: grad L + bounds = -B d.
+    let curvature = hessian * DVector::from_column_slice(&qp.step);
+    let stationarity = curvature.amax();
+    let complementarity = now
+        .values
+        .inequalities
+        .iter()
+        .zip(&qp.multipliers.inequalities)
+        .fold(0.0f64, |a, (c, m)| a.max((c * m).abs()));
+    let bounds = (qp.multipliers.lower.iter().zip(&qp.step))
+        .chain(qp.multipliers.upper.iter().zip(&qp.step))
+        .fold(0.0f64, |a, (m, d)| a.max((m * d).abs()));
+    stationarity.max(complementarity).max(bounds).max(now.values.violation())
+}
+
+/// Damped BFGS update with the change of the Lagrangian's gradient.
+fn update_hessian(state: &mut SqpState, last: &Iterate, next: &Iterate) {
+    let s = DVector::from_iterator(last.x.len(), next.x.iter().zip(&last.x).map(|(b, a)| b - a));
+    let mut y = lagrangian(&next.slopes, &state.multipliers) - lagrangian(&last.slopes, &state.multipliers);
+    let (ss, sy) = (s.norm_squared(), s.dot(&y));
+    if ss == 0.0 {
+        return;
+    }
+    if state.fresh_hessian && sy > 0.0 {
+        let n = s.len();
+        state.hessian = DMatrix::identity(n, n) * (y.norm_squared() / sy).clamp(1e-4, 1e4);
+    }
+    state.fresh_hessian = false;
+    let bs = &state.hessian * &s;
+    let sbs = s.dot(&bs);
+    if sy < DAMPING * sbs {
+        let theta = (1.0 - DAMPING) * sbs / (sbs - sy);
+        y = y * theta + &bs * (1.0 - theta);
+    }
+    let sy = s.dot(&y);
+    state.hessian += &y * y.transpose() / sy - &bs * bs.transpose() / sbs;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rosenbrock's valley inside a disc; with `hole` the model fails beyond a line.
+    struct Disc {
+        hole: bool,
+    }
+
+    impl ConstrainedProblem for Disc {
+        fn bounds(&self) -> (Vec<f64>, Vec<f64>) {
+            (vec![-1.5, -1.5], vec![1.5, 1.5])
+        }
+        fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
+            if self.hole && x[1] > 0.7 {
+                return Err(EvaluationError::Failed("outside".into()));
+            }
+            Ok(Values {
+                objective: (1.0 - x[0]).powi(2) + 100.0 * (x[1] - x[0] * x[0]).powi(2),
+                inequalities: vec![x[0] * x[0] + x[1] * x[1] - 1.0],
+                equalities: vec![],
+            })
+        }
+        fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
+            let v = x[1] - x[0] * x[0];
+            Ok(Slopes {
+                objective: vec![-2.0 * (1.0 - x[0]) - 400.0 * x[0] * v, 200.0 * v],
+                inequalities: vec![vec![2.0 * x[0], 2.0 * x[1]]],
+                equalities: vec![],
+            })
+        }
+    }
+
+    #[test]
+    fn finds_the_constrained_minimum_from_several_starts_even_if_trials_fail() {
+        for (start, hole) in
+            [([-1.0, 0.5], false), ([0.0, 0.0], false), ([0.0, 0.0], true), ([0.5, -1.2], false)]
+        {
+            let end = minimise(&Disc { hole }, &start, SqpOptions::default()).unwrap();
+            assert_eq!(end.outcome, Outcome::Converged, "from {start:?}: {:?}", end.history.last());
+            assert!((end.x[0] - 0.786_415_1).abs() < 1e-5 && (end.x[1] - 0.617_698_3).abs() < 1e-5);
+            assert!(end.kkt <= 1e-6 && end.multipliers.inequalities[0] > 0.0);
+            assert!(end.gradients <= end.evaluations);
+        }
+    }
+
+    #[test]
+    fn a_problem_without_feasible_point_says_so() {
+        struct Never;
+        impl ConstrainedProblem for Never {
+            fn bounds(&self) -> (Vec<f64>, Vec<f64>) {
+                (vec![0.0], vec![1.0])
+            }
+            fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
+                Ok(Values { objective: x[0], inequalities: vec![2.0 - x[0]], equalities: vec![] })
+            }
+            fn slopes(&self, _: &[f64]) -> Result<Slopes, EvaluationError> {
+                Ok(Slopes { objective: vec![1.0], inequalities: vec![vec![-1.0]], equalities: vec![] })
+            }
+        }
+        let end = minimise(&Never, &[0.2], SqpOptions::default()).unwrap();
+        assert_eq!(end.outcome, Outcome::Infeasible);
+        assert!((end.x[0] - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_start_that_fails_and_a_cancelled_run_are_outcomes() {
+        let end = minimise(&Disc { hole: true }, &[0.0, 1.0], SqpOptions::default()).unwrap();
+        assert_eq!((end.outcome, end.failures.len()), (Outcome::StartFailed, 1));
+        struct Stopped;
+        impl ConstrainedProblem for Stopped {
+            fn bounds(&self) -> (Vec<f64>, Vec<f64>) {
+                (vec![0.0], vec![1.0])
+            }
+            fn values(&self, _: &[f64]) -> Result<Values, EvaluationError> {
+                Err(EvaluationError::Cancelled)
+            }
+            fn slopes(&self, _: &[f64]) -> Result<Slopes, EvaluationError> {
+                Err(EvaluationError::Cancelled)
+            }
+        }
+        assert_eq!(minimise(&Stopped, &[0.5], SqpOptions::default()).unwrap().outcome, Outcome::Cancelled);
+    }
+}

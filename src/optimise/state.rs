@@ -1,0 +1,195 @@
+//! What the optimiser knows: iterate, model, multipliers, incumbent, history.
+
+use super::{Outcome, Slopes, Values};
+use crate::run::IterationEvent;
+use argmin::core::{Problem, State, TerminationReason, TerminationStatus};
+use nalgebra::DMatrix;
+use std::collections::HashMap;
+use std::time::Duration;
+
+/// Lagrange multipliers.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Multipliers {
+    /// Of the inequalities, at or above zero.
+    pub inequalities: Vec<f64>,
+    /// Of the equalities.
+    pub equalities: Vec<f64>,
+    /// Of the lower bounds, at or above zero.
+    pub lower: Vec<f64>,
+    /// Of the upper bounds, at or above zero.
+    pub upper: Vec<f64>,
+}
+
+/// A point with everything known there, in scaled variables.
+#[derive(Debug, Clone)]
+pub(super) struct Iterate {
+    pub x: Vec<f64>,
+    pub values: Values,
+    pub slopes: Slopes,
+}
+
+/// State of an SQP run; scaled variables inside. argmin's own notion of "best" looks at the cost alone, so the incumbent is
+/// kept here: feasible points first, then lower objective.
+#[derive(Debug, Clone)]
+pub struct SqpState {
+    pub(super) iterate: Option<Iterate>,
+    pub(super) incumbent: Option<(Vec<f64>, Values)>,
+    pub(super) hessian: DMatrix<f64>,
+    pub(super) fresh_hessian: bool,
+    pub(super) multipliers: Multipliers,
+    pub(super) penalty: f64,
+    pub(super) kkt: f64,
+    pub(super) last_step: f64,
+    pub(super) failures: Vec<String>,
+    pub(super) history: Vec<IterationEvent>,
+    pub(super) outcome: Option<Outcome>,
+    start: Option<Vec<f64>>,
+    iter: u64,
+    max_iters: u64,
+    counts: HashMap<String, u64>,
+    time: Option<Duration>,
+    status: TerminationStatus,
+}
+
+impl SqpState {
+    /// Sets the start, in true variables.
+    #[must_use]
+    pub fn start(mut self, x: Vec<f64>) -> Self {
+        self.start = Some(x);
+        self
+    }
+
+    /// Limits the iterations.
+    #[must_use]
+    pub fn max_iters(mut self, n: u64) -> Self {
+        self.max_iters = n;
+        self
+    }
+
+    pub(super) fn start_point(&self) -> Option<&[f64]> {
+        self.start.as_deref()
+    }
+
+    /// Ends the run with an outcome.
+    pub(super) fn end(mut self, outcome: Outcome) -> Self {
+        self.outcome = Some(outcome);
+        let reason = match outcome {
+            Outcome::Converged => TerminationReason::SolverConverged,
+            Outcome::Cancelled => TerminationReason::Interrupt,
+            other => TerminationReason::SolverExit(format!("{other:?}")),
+        };
+        self.terminate_with(reason)
+    }
+
+    /// Keeps the better of the incumbent and the iterate: smaller violation above `feasible`, then smaller objective.
+    pub(super) fn remember(&mut self, feasible: f64) {
+        let Some(now) = &self.iterate else { return };
+        let rank = |v: &Values| (v.violation().max(feasible), v.objective);
+        let better = self.incumbent.as_ref().is_none_or(|(_, best)| rank(&now.values) < rank(best));
+        if better {
+            self.incumbent = Some((now.x.clone(), now.values.clone()));
+        }
+    }
+}
+
+impl State for SqpState {
+    type Param = Vec<f64>;
+    type Float = f64;
+
+    fn new() -> Self {
+        Self {
+            iterate: None,
+            incumbent: None,
+            hessian: DMatrix::zeros(0, 0),
+            fresh_hessian: true,
+            multipliers: Multipliers::default(),
+            penalty: 0.0,
+            kkt: f64::INFINITY,
+            last_step: 0.0,
+            failures: Vec::new(),
+            history: Vec::new(),
+            outcome: None,
+            start: None,
+            iter: 0,
+            max_iters: u64::MAX,
+            counts: HashMap::new(),
+            time: Some(Duration::ZERO),
+            status: TerminationStatus::NotTerminated,
+        }
+    }
+
+    fn update(&mut self) {}
+
+    fn get_param(&self) -> Option<&Vec<f64>> {
+        self.iterate.as_ref().map(|i| &i.x)
+    }
+
+    fn get_best_param(&self) -> Option<&Vec<f64>> {
+        self.incumbent.as_ref().map(|(x, _)| x)
+    }
+
+    fn get_max_iters(&self) -> u64 {
+        self.max_iters
+    }
+
+    fn increment_iter(&mut self) {
+        self.iter += 1;
+    }
+
+    fn get_iter(&self) -> u64 {
+        self.iter
+    }
+
+    fn get_cost(&self) -> f64 {
+        self.iterate.as_ref().map_or(f64::INFINITY, |i| i.values.objective)
+    }
+
+    fn get_best_cost(&self) -> f64 {
+        self.incumbent.as_ref().map_or(f64::INFINITY, |(_, v)| v.objective)
+    }
+
+    fn get_target_cost(&self) -> f64 {
+        f64::NEG_INFINITY
+    }
+
+    fn func_counts<O>(&mut self, problem: &Problem<O>) {
+        self.counts = problem.counts.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect();
+    }
+
+    fn get_func_counts(&self) -> &HashMap<String, u64> {
+        &self.counts
+    }
+
+    fn time(&mut self, time: Option<Duration>) -> &mut Self {
+        self.time = time;
+        self
+    }
+
+    fn get_time(&self) -> Option<Duration> {
+        self.time
+    }
+
+    fn get_last_best_iter(&self) -> u64 {
+        self.iter
+    }
+
+    fn is_best(&self) -> bool {
+        self.incumbent.as_ref().zip(self.iterate.as_ref()).is_some_and(|((x, _), i)| *x == i.x)
+    }
+
+    fn terminate_with(mut self, reason: TerminationReason) -> Self {
+        self.status = TerminationStatus::Terminated(reason);
+        self
+    }
+
+    fn get_termination_status(&self) -> &TerminationStatus {
+        &self.status
+    }
+
+    fn get_termination_reason(&self) -> Option<&TerminationReason> {
+        match &self.status {
+            TerminationStatus::Terminated(reason) => Some(reason),
+            TerminationStatus::NotTerminated => None,
+        }
+    }
+}
