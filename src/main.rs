@@ -1,1 +1,5 @@
-fn main() {}
+//! The roof: joins the doors and hands the exit code to the system.
+
+fn main() -> std::process::ExitCode {
+    stribeck::cli::main()
+}

@@ -10,23 +10,22 @@ const IMEP_POINTS: usize = 7200;
 #[derive(Debug, Clone)]
 pub struct CylinderPressure {
     curve: PeriodicSpline,
-    scale: f64,
 }
 
 impl CylinderPressure {
     /// Periodic cubic spline through an indicator diagram; crank angles in radians, one cycle without its end point.
     pub fn from_table(crank_angle_rad: Vec<f64>, pressure_pa: Vec<f64>) -> Result<Self, SplineError> {
-        Ok(Self { curve: PeriodicSpline::new(crank_angle_rad, pressure_pa, WORKING_CYCLE_RAD)?, scale: 1.0 })
+        Ok(Self { curve: PeriodicSpline::new(crank_angle_rad, pressure_pa, WORKING_CYCLE_RAD)? })
     }
 
     /// The same diagram with every pressure multiplied, for another operating point.
     pub fn scaled(&self, factor: f64) -> Self {
-        Self { curve: self.curve.clone(), scale: self.scale * factor }
+        Self { curve: self.curve.scaled(factor) }
     }
 
     /// Absolute pressure in Pa.
     pub fn at(&self, crank_angle_rad: f64) -> f64 {
-        self.scale * self.curve.value(crank_angle_rad)
+        self.curve.value(crank_angle_rad)
     }
 
     /// Indicated mean effective pressure: the work of the cycle per swept volume, Pa.

@@ -21,7 +21,7 @@ mod transient;
 
 pub use adjoint::Adjoint;
 pub use finite::{Difference, FiniteDifference};
-pub use taylor::{TaylorRow, taylor_table};
+pub use taylor::{TaylorRow, taylor_table, verdict};
 pub use transient::Transient;
 
 use crate::dae::{InvalidParameters, SensitiveDae};

@@ -52,3 +52,37 @@ pub fn taylor_table<M: SensitiveDae>(
     }
     Ok(tables)
 }
+
+/// Change below this (relative) is rounding.
+const ROUNDING: f64 = 1e-11;
+
+/// What a Taylor table says, in words.
+pub fn verdict(table: &[TaylorRow]) -> String {
+    let orders: Vec<f64> =
+        table.iter().filter(|r| r.remainder > 10.0 * ROUNDING).filter_map(|r| r.order).collect();
+    let linear =
+        !table.is_empty() && table.iter().all(|r| r.remainder <= 100.0 * ROUNDING.max(1e-4 * r.change));
+    let worst = orders.iter().copied().fold(f64::INFINITY, f64::min);
+    match table.len() {
+        0 => "not checked".to_owned(),
+        _ if linear && orders.iter().all(|o| *o < 1.5) => {
+            "exact: linear along this direction up to rounding".to_owned()
+        }
+        _ if orders.is_empty() => "exact: the remainder is rounding".to_owned(),
+        _ if worst >= 1.8 => format!("exact: the remainder falls with order {worst:.2} or better"),
+        _ => kink(table, &orders),
+    }
+}
+
+/// Order two between first and last step, but not at every step: pieces of the cavitation boundary are crossed on the way.
+fn kink(table: &[TaylorRow], orders: &[f64]) -> String {
+    let (first, last) = (table[0], table[table.len() - 1]);
+    let overall = (first.remainder / last.remainder).log2() / (first.step / last.step).log2();
+    if overall >= 1.7 {
+        return format!(
+            "exact: order {overall:.2} over all steps; single steps cross a kink of the cavitation boundary"
+        );
+    }
+    let listed: Vec<String> = orders.iter().map(|o| format!("{o:.1}")).collect();
+    format!("kink or error: the remainder falls with orders {}", listed.join(", "))
+}

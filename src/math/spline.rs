@@ -56,14 +56,15 @@ impl PeriodicSpline {
         Ok(Self { period, knots, values, bends })
     }
 
+    /// The same curve with every value multiplied.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let times = |v: &[f64]| v.iter().map(|v| v * factor).collect();
+        Self { values: times(&self.values), bends: times(&self.bends), ..self.clone() }
+    }
+
     /// Length of one period.
     pub fn period(&self) -> f64 {
         self.period
-    }
-
-    /// The knots, increasing.
-    pub fn knots(&self) -> &[f64] {
-        &self.knots
     }
 
     /// Value at `x`.

@@ -1,0 +1,131 @@
+//! The four commands.
+
+use super::progress::Bars;
+use super::{
+    CheckArguments, EXIT_FILE, EXIT_STUDY, GradientArguments, RunArguments, SchemaArguments, exit_code,
+    faults, tables,
+};
+use crate::optimise::EvaluationError;
+use crate::report;
+use crate::run::{Cancel, RunContext};
+use crate::study::{Format, Study, StudyErrors, Sweep, compare_engines};
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+/// A command that cannot go on.
+pub(super) enum Stop {
+    /// A file could not be read or written.
+    File(PathBuf, std::io::Error),
+    /// The study has mistakes.
+    Study(PathBuf, StudyErrors, bool),
+    /// The simulation failed.
+    Simulation(EvaluationError),
+}
+
+impl Stop {
+    /// Tells the reason and returns the exit code.
+    pub fn tell(&self) -> u8 {
+        match self {
+            Self::File(path, e) => {
+                eprintln!("error: {}: {e}", path.display());
+                EXIT_FILE
+            }
+            Self::Study(_, errors, true) => {
+                put(&(serde_json::to_string_pretty(&errors.faults).unwrap_or_default() + "\n"));
+                EXIT_STUDY
+            }
+            Self::Study(path, errors, false) => {
+                eprint!("{}", faults::render(path, errors, std::io::stderr().is_terminal()));
+                EXIT_STUDY
+            }
+            Self::Simulation(EvaluationError::Cancelled) => {
+                eprintln!("cancelled");
+                130
+            }
+            Self::Simulation(e) => {
+                eprintln!("error: the start design cannot be simulated: {e}");
+                exit_code(crate::optimise::Outcome::StartFailed)
+            }
+        }
+    }
+}
+
+/// Prints to standard output; a closed pipe is the reader's choice, not an error.
+fn put(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+fn read(path: &Path, json: bool) -> Result<Study, Stop> {
+    let text = std::fs::read_to_string(path).map_err(|e| Stop::File(path.to_owned(), e))?;
+    let base = path.parent().unwrap_or(Path::new("."));
+    Study::read(&text, Format::of_path(path), Some(base)).map_err(|e| Stop::Study(path.to_owned(), e, json))
+}
+
+/// A flag that Ctrl-C raises; a second Ctrl-C ends the process at once.
+fn cancel_on_ctrl_c() -> Cancel {
+    let cancel = Cancel::default();
+    let flag = cancel.clone();
+    let handler = move || {
+        if flag.is_cancelled() {
+            std::process::exit(130);
+        }
+        flag.cancel();
+        eprintln!("\nstopping; the best design so far is being written (press again to stop at once)");
+    };
+    if ctrlc::set_handler(handler).is_err() {
+        eprintln!("warning: Ctrl-C will end this run without a report");
+    }
+    cancel
+}
+
+pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
+    let study = read(&a.file, false)?;
+    let name = a.file.file_stem().unwrap_or_default();
+    let folder = a.out.clone().unwrap_or_else(|| Path::new("out").join(name));
+    std::fs::create_dir_all(&folder).map_err(|e| Stop::File(folder.clone(), e))?;
+    let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(study.optimiser.max_iterations));
+    let findings = crate::study::run(&study, RunContext { cancel: &cancel, progress: &bars });
+    bars.finish();
+    report::write_folder(&findings, &folder).map_err(|e| Stop::File(folder.clone(), e))?;
+    if a.json {
+        put(&(serde_json::to_string_pretty(&findings.report).unwrap_or_default() + "\n"));
+    } else {
+        put(&tables::summary(&findings.report, std::io::stdout().is_terminal()));
+        put(&format!("report: {}\n", folder.join("report.html").display()));
+    }
+    Ok(exit_code(findings.report.outcome.status))
+}
+
+pub(super) fn check(a: &CheckArguments) -> Result<u8, Stop> {
+    let study = read(&a.file, a.json)?;
+    if a.json {
+        put(&(serde_json::to_string_pretty(&study.to_json()).unwrap_or_default() + "\n"));
+    } else {
+        put(&format!("# checked: no mistakes; every default is written out\n# hash: {}\n", study.hash));
+        put(&study.to_toml());
+    }
+    Ok(0)
+}
+
+pub(super) fn schema(a: &SchemaArguments) -> Result<u8, Stop> {
+    let schema = if a.report { report::schema() } else { crate::study::schema() };
+    put(&(serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"));
+    Ok(0)
+}
+
+pub(super) fn gradient(a: &GradientArguments) -> Result<u8, Stop> {
+    let study = read(&a.file, false)?;
+    let engines = a.engine.map_or_else(|| vec![study.engine], super::EngineChoice::engines);
+    let sweep = if a.sweep { Sweep::wide() } else { Sweep(vec![study.perturbation]) };
+    let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(0));
+    let context = RunContext { cancel: &cancel, progress: &bars };
+    let result = compare_engines(&study, &engines, &sweep, context);
+    bars.finish();
+    let comparisons = result.map_err(Stop::Simulation)?;
+    let json = serde_json::to_string_pretty(&comparisons).unwrap_or_default() + "\n";
+    if let Some(path) = &a.out {
+        std::fs::write(path, &json).map_err(|e| Stop::File(path.clone(), e))?;
+    }
+    put(&if a.json { json } else { tables::engines(&comparisons) });
+    Ok(0)
+}

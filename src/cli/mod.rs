@@ -1,0 +1,139 @@
+//! The command line: `stribeck run | check | schema | gradient`.
+//!
+//! Answers go to standard output, progress and errors to standard error. Colours and progress bars appear on terminals
+//! only. Exit codes are part of the interface, see [`exit_code`].
+
+mod commands;
+mod faults;
+mod progress;
+mod tables;
+
+use crate::gradient::EngineName;
+use crate::optimise::Outcome;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Exit code for files that cannot be read or written.
+pub const EXIT_FILE: u8 = 1;
+/// Exit code for a study (or command line) with mistakes.
+pub const EXIT_STUDY: u8 = 2;
+
+/// Exit code of an outcome: 0 only for a converged design.
+pub fn exit_code(outcome: Outcome) -> u8 {
+    match outcome {
+        Outcome::Converged => 0,
+        Outcome::AlmostConverged => 3,
+        Outcome::IterationLimit => 4,
+        Outcome::NoProgress => 5,
+        Outcome::Infeasible => 6,
+        Outcome::StartFailed => 7,
+        Outcome::Cancelled => 130,
+    }
+}
+
+/// Which journal bearing loses the least power to friction, and is still safe?
+#[derive(Debug, Parser)]
+#[command(
+    name = "stribeck",
+    version,
+    after_help = "Exit codes: 0 converged, 1 file error, 2 mistakes in the study or command line, \
+3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 130 cancelled."
+)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Finds the design with the least loss and writes a report.
+    Run(RunArguments),
+    /// Checks a study and prints it with every default written out.
+    Check(CheckArguments),
+    /// Prints the JSON Schema of the study file, or of the report.
+    Schema(SchemaArguments),
+    /// Computes the gradient at the start design, with one engine or all five side by side.
+    Gradient(GradientArguments),
+}
+
+#[derive(Debug, Args)]
+struct RunArguments {
+    /// Study file, TOML or JSON.
+    file: PathBuf,
+    /// Folder for report.html, report.json and orbit.csv [default: out/<name of the study file>].
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Print the report as JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct CheckArguments {
+    /// Study file, TOML or JSON.
+    file: PathBuf,
+    /// Print the study, or the list of mistakes, as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+struct SchemaArguments {
+    /// Print the schema of report.json instead.
+    #[arg(long)]
+    report: bool,
+}
+
+#[derive(Debug, Args)]
+struct GradientArguments {
+    /// Study file, TOML or JSON.
+    file: PathBuf,
+    /// Engine [default: the one the study names].
+    #[arg(long, value_enum, ignore_case = true)]
+    engine: Option<EngineChoice>,
+    /// Let the finite differences try perturbations from 1e-3 to 1e-8.
+    #[arg(long)]
+    sweep: bool,
+    /// Print the comparison as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Write the comparison as JSON to a file.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum EngineChoice {
+    Fw,
+    Bw,
+    Cen,
+    Tra,
+    Adj,
+    All,
+}
+
+impl EngineChoice {
+    fn engines(self) -> Vec<EngineName> {
+        match self {
+            Self::Fw => vec![EngineName::Fw],
+            Self::Bw => vec![EngineName::Bw],
+            Self::Cen => vec![EngineName::Cen],
+            Self::Tra => vec![EngineName::Tra],
+            Self::Adj => vec![EngineName::Adj],
+            Self::All => EngineName::ALL.to_vec(),
+        }
+    }
+}
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let code = match &arguments.command {
+        Command::Run(a) => commands::run(a),
+        Command::Check(a) => commands::check(a),
+        Command::Schema(a) => commands::schema(a),
+        Command::Gradient(a) => commands::gradient(a),
+    };
+    ExitCode::from(code.unwrap_or_else(|stop| stop.tell()))
+}

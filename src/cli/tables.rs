@@ -1,0 +1,139 @@
+//! Short tables for the terminal.
+
+use crate::report::{AtBound, Report, short};
+use crate::study::{EngineComparison, EngineRow};
+use comfy_table::{CellAlignment, Table, presets};
+use owo_colors::OwoColorize;
+
+fn table(head: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_header(head.to_vec());
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+fn maybe(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), short)
+}
+
+/// Design, limits and loss of a run.
+pub(super) fn summary(report: &Report, colour: bool) -> String {
+    let status = format!("{:?}", report.outcome.status);
+    let shown = match (colour, status.as_str()) {
+        (true, "Converged") => status.green().bold().to_string(),
+        (true, _) => status.red().bold().to_string(),
+        (false, _) => status.clone(),
+    };
+    let mut text = format!("{}\n{shown}: {}\n\n", report.title, report.outcome.advice);
+    for reason in &report.outcome.refused {
+        text += &format!("refused: {reason}\n");
+    }
+    let mut design = table(&["parameter", "start", "design", "unit", "lower", "upper", "at bound"]);
+    for d in &report.design {
+        let bound = match d.at_bound {
+            AtBound::No => "",
+            AtBound::Lower => "lower",
+            AtBound::Upper => "upper",
+        };
+        design.add_row([
+            d.name.clone(),
+            short(d.start),
+            short(d.value),
+            d.unit.clone(),
+            short(d.lower),
+            short(d.upper),
+            bound.to_owned(),
+        ]);
+    }
+    text += &format!("{design}\n\n");
+    if !report.constraints.is_empty() {
+        text += &format!("{}\n\n", limits(report));
+    }
+    if let (Some(start), Some(optimum)) = (&report.objective.start, &report.objective.optimum) {
+        text += &format!(
+            "mean friction loss: {} W at the start, {} W at the design, {} % saved\n",
+            short(start.total_w),
+            short(optimum.total_w),
+            maybe(report.objective.saving_percent)
+        );
+    }
+    text += &format!(
+        "KKT residual {}, {} cycles simulated, {} gradient calls, {} s\n",
+        report.kkt.residual.map_or_else(|| "-".to_owned(), |r| format!("{r:.1e}")),
+        report.cost.total.simulations,
+        report.cost.gradient_calls,
+        short(report.cost.seconds)
+    );
+    text
+}
+
+fn limits(report: &Report) -> Table {
+    let mut limits = table(&["limit", "bearing, point", "value", "limit", "unit", "state", "price [W/unit]"]);
+    for c in &report.constraints {
+        let state = match (c.met, c.active) {
+            (false, _) => "violated",
+            (true, true) => "active",
+            (true, false) => "",
+        };
+        limits.add_row([
+            c.quantity.clone(),
+            format!("{}, {}", c.bearing, c.operating_point),
+            maybe(c.value),
+            format!("{} {}", c.sense, short(c.limit)),
+            c.unit.clone(),
+            state.to_owned(),
+            if c.active { short(c.price_w_per_unit) } else { String::new() },
+        ]);
+    }
+    limits
+}
+
+/// The gradient engines side by side.
+pub(super) fn engines(comparisons: &[EngineComparison]) -> String {
+    let mut text = String::new();
+    for c in comparisons {
+        text += &format!("{}, {}\n\n", c.bearing, c.operating_point);
+        for (k, quantity) in c.quantities.iter().enumerate() {
+            let mut head = vec!["engine".to_owned(), "perturbation".to_owned()];
+            head.extend(c.parameters.iter().zip(&c.units[k]).map(|(p, u)| format!("{p} [{u}]")));
+            head.push("error against ADJ".to_owned());
+            let mut values = table(&head.iter().map(String::as_str).collect::<Vec<_>>());
+            for row in &c.rows {
+                let mut line = vec![row.engine.as_str().to_owned(), perturbation(row)];
+                line.extend(row.values[k].iter().map(|v| format!("{v:.6e}")));
+                line.push(format!("{:.1e}", row.error[k]));
+                values.add_row(line);
+            }
+            text += &format!("d {quantity}\n{values}\n\n");
+        }
+        let mut cost = table(&[
+            "engine",
+            "perturbation",
+            "cycles",
+            "steps",
+            "factorisations",
+            "solves",
+            "time / simulation",
+        ]);
+        for row in &c.rows {
+            cost.add_row([
+                row.engine.as_str().to_owned(),
+                perturbation(row),
+                short(row.sweeps),
+                row.cost.steps.to_string(),
+                row.cost.factorisations.to_string(),
+                row.cost.solves.to_string(),
+                short(row.time_ratio),
+            ]);
+        }
+        text += &format!("cost of all quantities together\n{cost}\n\n");
+    }
+    text
+}
+
+fn perturbation(row: &EngineRow) -> String {
+    row.perturbation.map_or_else(String::new, |e| format!("{e:.0e}"))
+}

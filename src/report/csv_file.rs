@@ -1,0 +1,44 @@
+//! `orbit.csv`: the working cycles at the design found, one row per bearing, operating point and step.
+
+use super::Findings;
+
+/// The table as text.
+pub fn orbit_csv(findings: &Findings) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "bearing",
+        "operating_point",
+        "crank_angle_deg",
+        "eccentricity_x_ratio",
+        "eccentricity_y_ratio",
+        "film_thickness_min_um",
+        "gap_max_um",
+        "film_pressure_max_mpa",
+        "friction_loss_w",
+        "dissipation_w",
+        "side_flow_l_min",
+        "load_x_kn",
+        "load_y_kn",
+    ])?;
+    for c in &findings.curves {
+        for n in 0..c.crank_angle_deg.len() {
+            let numbers = [
+                c.crank_angle_deg[n],
+                c.eccentricity[n][0],
+                c.eccentricity[n][1],
+                c.film_min_um[n],
+                c.gap_max_um[n],
+                c.pressure_max_mpa[n],
+                c.loss_w[n],
+                c.dissipation_w[n],
+                c.side_flow_l_min[n],
+                c.load_kn[n][0],
+                c.load_kn[n][1],
+            ];
+            let text = numbers.iter().map(|v| format!("{v:.9e}"));
+            writer.write_record([c.bearing.clone(), c.operating_point.clone()].into_iter().chain(text))?;
+        }
+    }
+    let bytes = writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

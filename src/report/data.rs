@@ -1,0 +1,326 @@
+//! Content of `report.json`. Every number that has a unit names it in its key or stands beside it.
+
+use crate::gradient::{EngineName, TaylorRow};
+use crate::optimise::Outcome;
+use crate::run::{Cost, IterationEvent};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Version of the report format.
+pub const REPORT_FORMAT: &str = "stribeck-report/1";
+
+/// Everything a run found out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Report {
+    /// Version of this format, "stribeck-report/1".
+    pub schema_version: String,
+    /// SHA-256 of the study with every default written out and its tables.
+    pub study_hash: String,
+    /// Title of the study.
+    pub title: String,
+    /// Question of the study.
+    pub question: Option<String>,
+    /// How it ended.
+    pub outcome: OutcomeReport,
+    /// The design found.
+    pub design: Vec<DesignValue>,
+    /// The objective before and after.
+    pub objective: ObjectiveReport,
+    /// Every limit, one entry per bearing and operating point.
+    pub constraints: Vec<ConstraintReport>,
+    /// Optimality.
+    pub kkt: KktReport,
+    /// Gradient at the design, with its proof.
+    pub gradient: Option<GradientReport>,
+    /// Working cycle at the design, one entry per bearing and operating point.
+    pub orbit: Vec<OrbitReport>,
+    /// Accepted designs.
+    pub history: Vec<IterationEvent>,
+    /// Work done.
+    pub cost: CostReport,
+    /// What is assumed and why.
+    pub assumptions: Vec<Assumption>,
+    /// What this rests on.
+    pub provenance: Provenance,
+}
+
+/// End of the search.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OutcomeReport {
+    /// Status.
+    pub status: Outcome,
+    /// What to do with it.
+    pub advice: String,
+    /// Reasons of refused simulations, if any.
+    pub refused: Vec<String>,
+}
+
+/// Which bound a parameter stands at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum AtBound {
+    /// Strictly inside its box.
+    No,
+    /// At the lower bound.
+    Lower,
+    /// At the upper bound.
+    Upper,
+}
+
+/// One design parameter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DesignValue {
+    /// Name as in the study.
+    pub name: String,
+    /// Value found.
+    pub value: f64,
+    /// Unit of value, start and bounds.
+    pub unit: String,
+    /// Value at the start.
+    pub start: f64,
+    /// Lower bound.
+    pub lower: f64,
+    /// Upper bound.
+    pub upper: f64,
+    /// Bound it stands at.
+    pub at_bound: AtBound,
+}
+
+/// Loss at one design.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Loss {
+    /// Mean friction loss (wall power), W.
+    pub total_w: f64,
+    /// Its hydrodynamic part, W.
+    pub hydrodynamic_w: f64,
+    /// Its asperity contact part, W; zero for smooth surfaces.
+    pub contact_w: f64,
+    /// Power dissipated in the oil: wall power and squeeze power together, W.
+    pub dissipation_w: f64,
+}
+
+/// Objective before and after.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ObjectiveReport {
+    /// What is minimised.
+    pub quantity: String,
+    /// At the start design; none if it could not be simulated.
+    pub start: Option<Loss>,
+    /// At the design found.
+    pub optimum: Option<Loss>,
+    /// Saving relative to the start, percent.
+    pub saving_percent: Option<f64>,
+    /// Bearings and operating points.
+    pub operating_points: Vec<CaseLoss>,
+}
+
+/// Loss of one bearing at one operating point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CaseLoss {
+    /// Operating point.
+    pub operating_point: String,
+    /// Bearing.
+    pub bearing: String,
+    /// Number of such bearings.
+    pub count: u32,
+    /// Share of the operating point.
+    pub weight: f64,
+    /// At the start design, one bearing.
+    pub start: Option<Loss>,
+    /// At the design found, one bearing.
+    pub optimum: Option<Loss>,
+}
+
+/// One limit at one bearing and operating point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ConstraintReport {
+    /// Limited quantity.
+    pub quantity: String,
+    /// Bearing.
+    pub bearing: String,
+    /// Operating point.
+    pub operating_point: String,
+    /// "at least" or "at most".
+    pub sense: String,
+    /// Value the optimiser sees: smooth, on the safe side of the exact one.
+    pub value: Option<f64>,
+    /// Exact extremum on the mesh.
+    pub exact_value: Option<f64>,
+    /// Limit.
+    pub limit: f64,
+    /// Unit of values and limit.
+    pub unit: String,
+    /// Whether the limit holds the design back.
+    pub active: bool,
+    /// Whether the limit is kept, within the tolerance of the optimiser.
+    pub met: bool,
+    /// Loss in watts that one unit of relaxation would save.
+    pub price_w_per_unit: f64,
+}
+
+/// Optimality of the design.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct KktReport {
+    /// Largest of stationarity, complementarity and violation, scaled; none without a simulated design.
+    pub residual: Option<f64>,
+    /// Wanted residual.
+    pub tolerance: f64,
+}
+
+/// Derivatives of one quantity of one case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GradientRow {
+    /// Quantity.
+    pub quantity: String,
+    /// Bearing.
+    pub bearing: String,
+    /// Operating point.
+    pub operating_point: String,
+    /// Parameters, in the order of the values.
+    pub parameters: Vec<String>,
+    /// Derivatives.
+    pub values: Vec<f64>,
+    /// Units of the derivatives.
+    pub units: Vec<String>,
+    /// Taylor-remainder test along all parameters together.
+    pub check: Vec<TaylorRow>,
+    /// What the test says.
+    pub verdict: String,
+}
+
+/// Gradient with proof.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GradientReport {
+    /// Engine.
+    pub engine: EngineName,
+    /// One row per quantity, bearing and operating point.
+    pub rows: Vec<GradientRow>,
+    /// Share of the orbit's memory left when the engine stopped sweeping.
+    pub closure: f64,
+    /// Cells at which the film has a kink, over all steps.
+    pub weakly_active_cells: usize,
+}
+
+/// An extreme value and where in the cycle it occurs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Extremum {
+    /// Value, in the unit of its key.
+    pub value: f64,
+    /// Crank angle after firing top dead centre, degrees.
+    pub crank_angle_deg: f64,
+}
+
+/// Working cycle of one bearing at one operating point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OrbitReport {
+    /// Bearing.
+    pub bearing: String,
+    /// Operating point.
+    pub operating_point: String,
+    /// Smallest film thickness.
+    pub min_film_thickness_um: Extremum,
+    /// Largest gap.
+    pub max_gap_um: Extremum,
+    /// Largest film pressure.
+    pub max_film_pressure_mpa: Extremum,
+    /// Largest specific load.
+    pub max_specific_load_mpa: Extremum,
+    /// Largest momentary friction loss.
+    pub max_friction_loss_w: Extremum,
+    /// Mean side flow, l/min.
+    pub mean_side_flow_l_min: f64,
+    /// Dynamic viscosity of the film, mPa s.
+    pub viscosity_mpa_s: f64,
+    /// Steps per cycle.
+    pub steps: usize,
+    /// Cycles marched until settled.
+    pub cycles: f64,
+    /// Difference of the last two passes, relative to the clearance.
+    pub periodicity: f64,
+}
+
+/// Work done.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CostReport {
+    /// Everything together.
+    #[serde(flatten)]
+    pub total: Cost,
+    /// Part of it spent on gradients.
+    pub gradients: Cost,
+    /// Gradient calls.
+    pub gradient_calls: u64,
+    /// Wall time, s. The only number that differs between reruns.
+    pub seconds: f64,
+}
+
+/// Something that is not known.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Assumption {
+    /// Key of the study.
+    pub key: String,
+    /// Its value.
+    pub value: String,
+    /// Reason.
+    pub reason: String,
+}
+
+/// What the report rests on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Provenance {
+    /// Program.
+    pub program: String,
+    /// Version.
+    pub version: String,
+    /// Laws and methods used, with their sources.
+    pub methods: Vec<String>,
+    /// The study with every default written out.
+    pub study: serde_json::Value,
+}
+
+/// One working cycle as curves, one value per step.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Curves {
+    /// Bearing.
+    pub bearing: String,
+    /// Operating point.
+    pub operating_point: String,
+    /// Crank angle after firing top dead centre, degrees.
+    pub crank_angle_deg: Vec<f64>,
+    /// Position of the journal over the radial clearance.
+    pub eccentricity: Vec<[f64; 2]>,
+    /// The same at the start design; empty if it could not be simulated or is the same.
+    pub start_eccentricity: Vec<[f64; 2]>,
+    /// Smallest film thickness, um.
+    pub film_min_um: Vec<f64>,
+    /// The same at the start design.
+    pub start_film_min_um: Vec<f64>,
+    /// Largest gap, um.
+    pub gap_max_um: Vec<f64>,
+    /// Largest film pressure, MPa.
+    pub pressure_max_mpa: Vec<f64>,
+    /// The same at the start design.
+    pub start_pressure_max_mpa: Vec<f64>,
+    /// Friction loss (wall power), W.
+    pub loss_w: Vec<f64>,
+    /// The same at the start design.
+    pub start_loss_w: Vec<f64>,
+    /// Dissipation, W.
+    pub dissipation_w: Vec<f64>,
+    /// Side flow, l/min.
+    pub side_flow_l_min: Vec<f64>,
+    /// Load of the journal on the shell, kN.
+    pub load_kn: Vec<[f64; 2]>,
+    /// Film pressure (MPa) at the instant of its maximum: rows around, columns across.
+    pub pressure_map_mpa: Vec<Vec<f64>>,
+    /// Width of the bearing, mm.
+    pub width_mm: f64,
+}
+
+/// Report and curves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Findings {
+    /// The report.
+    pub report: Report,
+    /// Cycles at the design found.
+    pub curves: Vec<Curves>,
+}

@@ -1,0 +1,80 @@
+//! A key of a study file: absent, given, or given wrongly. Keeps a mistake instead of failing, so all can be reported.
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::Value;
+use std::borrow::Cow;
+
+/// Longest piece of a wrong value that is quoted back.
+const QUOTED: usize = 60;
+
+/// Value of a key.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Given<T> {
+    /// The key is not there.
+    #[default]
+    Absent,
+    /// The key has a value of the right kind.
+    Value(T),
+    /// The key has a value that does not fit.
+    Wrong {
+        /// What was found, shortened.
+        found: String,
+        /// Why it does not fit.
+        problem: String,
+    },
+}
+
+impl<T> Given<T> {
+    /// The value, if there is a good one.
+    pub fn value(&self) -> Option<&T> {
+        match self {
+            Self::Value(v) => Some(v),
+            _ => None,
+        }
+    }
+
+    /// Whether the key is not there.
+    pub fn is_absent(&self) -> bool {
+        matches!(self, Self::Absent)
+    }
+}
+
+impl<'de, T: for<'a> Deserialize<'a>> Deserialize<'de> for Given<T> {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        let value = Value::deserialize(d)?;
+        let found = shortened(&value);
+        Ok(T::deserialize(value).map_or_else(|e| Self::Wrong { found, problem: e.to_string() }, Self::Value))
+    }
+}
+
+impl<T: Serialize> Serialize for Given<T> {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Value(v) => v.serialize(s),
+            _ => s.serialize_none(),
+        }
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Given<T> {
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        T::json_schema(generator)
+    }
+
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+}
+
+fn shortened(value: &Value) -> String {
+    let text = value.to_string();
+    if text.chars().count() <= QUOTED {
+        return text;
+    }
+    text.chars().take(QUOTED).chain("...".chars()).collect()
+}

@@ -1,0 +1,42 @@
+//! What was asked: the study file, its checks, and the run that answers it. The single door for CLI and service.
+//!
+//! ```text
+//! text (TOML or JSON) --document--> values with places --file--> StudyFile --check--> Study (SI, defaults written in)
+//! Study --build--> DesignProblem --run--> Report
+//! ```
+//!
+//! Reading never stops at the first mistake: every value that does not fit is kept as [`Given::Wrong`], and the check
+//! reports all of them with their places.
+
+mod build;
+mod check;
+mod document;
+mod engines;
+mod faults;
+mod file;
+mod given;
+mod machine;
+mod observe;
+mod run;
+mod table;
+mod vocabulary;
+
+pub use build::{CaseLabel, LimitLabel, Plan, plan};
+pub use check::{BearingPlan, ConstraintPlan, FilmPlan, OperatingPoint, ParameterPlan, Study};
+pub use document::Format;
+pub use engines::{EngineComparison, EngineRow, Sweep, compare_engines};
+
+pub use faults::{Fault, StudyErrors};
+pub use file::StudyFile;
+pub use given::Given;
+pub use run::run;
+
+pub use vocabulary::{QuantityName, Variable};
+
+/// Version of the study format this program reads.
+pub const FORMAT: &str = "stribeck-study/1";
+
+/// JSON Schema (2020-12) of the study file.
+pub fn schema() -> serde_json::Value {
+    schemars::schema_for!(StudyFile).to_value()
+}

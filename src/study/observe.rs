@@ -1,0 +1,161 @@
+//! Looks at simulated cycles: curves, extrema, losses.
+
+use super::build::{CaseLabel, Plan};
+use super::check::Study;
+use crate::cranktrain::{BearingOutput, JournalBearing};
+use crate::dae::{At, Dae};
+use crate::film::Gap;
+use crate::optimise::Evaluated;
+use crate::orbit::Orbit;
+use crate::report::{Curves, Extremum, Loss, OrbitReport};
+
+const L_MIN: f64 = 1e-3 / 60.0;
+
+/// Loss of one case.
+pub(super) fn loss(orbit: &Orbit) -> Loss {
+    let mean = |output: BearingOutput| {
+        orbit.outputs.iter().map(|y| y[output.index()]).sum::<f64>() / orbit.steps() as f64
+    };
+    let hydrodynamic_w = mean(BearingOutput::Loss);
+    // Smooth surfaces do not touch: the film model has no asperity contact.
+    Loss {
+        total_w: hydrodynamic_w,
+        hydrodynamic_w,
+        contact_w: 0.0,
+        dissipation_w: mean(BearingOutput::Dissipation),
+    }
+}
+
+/// Weighted loss of all cases.
+pub(super) fn total_loss(study: &Study, cases: &[CaseLabel], at: &Evaluated) -> Loss {
+    let mut sum = Loss { total_w: 0.0, hydrodynamic_w: 0.0, contact_w: 0.0, dissipation_w: 0.0 };
+    for (label, orbit) in cases.iter().zip(&at.orbits) {
+        let one = loss(orbit);
+        let share = study.points[label.point].weight * f64::from(study.bearings[label.bearing].count);
+        sum.total_w += share * one.total_w;
+        sum.hydrodynamic_w += share * one.hydrodynamic_w;
+        sum.contact_w += share * one.contact_w;
+        sum.dissipation_w += share * one.dissipation_w;
+    }
+    sum
+}
+
+/// Curves of one case at the design `x`, with those of the start beside them.
+pub(super) fn curves(
+    study: &Study,
+    plan: &Plan,
+    case: usize,
+    x: &[f64],
+    at: &Evaluated,
+    start: Option<&Evaluated>,
+) -> Option<Curves> {
+    let label = plan.cases[case];
+    let model = plan.problem.model(case, x).ok()?;
+    let now = Trace::of(&model, &at.orbits[case]);
+    let before = start.and_then(|s| {
+        let model = plan.problem.model(case, &plan.start).ok()?;
+        Some(Trace::of(&model, &s.orbits[case]))
+    });
+    let before = before.unwrap_or_default();
+    Some(Curves {
+        bearing: study.bearings[label.bearing].name.clone(),
+        operating_point: study.points[label.point].name.clone(),
+        crank_angle_deg: now.angle_deg,
+        eccentricity: now.eccentricity,
+        start_eccentricity: before.eccentricity,
+        film_min_um: now.film_min_um,
+        start_film_min_um: before.film_min_um,
+        gap_max_um: now.gap_max_um,
+        pressure_max_mpa: now.pressure_mpa,
+        start_pressure_max_mpa: before.pressure_mpa,
+        loss_w: now.loss_w,
+        start_loss_w: before.loss_w,
+        dissipation_w: now.dissipation_w,
+        side_flow_l_min: now.side_flow_l_min,
+        load_kn: now.load_kn,
+        pressure_map_mpa: now.map_mpa,
+        width_mm: model.setup().width_m * 1e3,
+    })
+}
+
+#[derive(Default)]
+struct Trace {
+    angle_deg: Vec<f64>,
+    eccentricity: Vec<[f64; 2]>,
+    film_min_um: Vec<f64>,
+    gap_max_um: Vec<f64>,
+    pressure_mpa: Vec<f64>,
+    loss_w: Vec<f64>,
+    dissipation_w: Vec<f64>,
+    side_flow_l_min: Vec<f64>,
+    load_kn: Vec<[f64; 2]>,
+    map_mpa: Vec<Vec<f64>>,
+}
+
+impl Trace {
+    fn of(model: &JournalBearing, orbit: &Orbit) -> Self {
+        let mut trace = Self::default();
+        let mut rate = vec![0.0; model.states()];
+        let mut highest = f64::NEG_INFINITY;
+        let film = &model.setup().film;
+        for n in 0..orbit.steps() {
+            orbit.rate(model, n, &mut rate);
+            let at = At { t_s: orbit.time_s(n), z: orbit.state(n, 0), rate: &rate };
+            let (u, q, y) = (model.film_input(at), model.film_unknowns(at.z), &orbit.outputs[n]);
+            let pressure = film.pressure_max_pa(&u, q);
+            trace.angle_deg.push((at.t_s * model.setup().speed_rad_s).to_degrees());
+            trace.eccentricity.push(u.eccentricity_m.map(|e| e / u.clearance_m));
+            trace.film_min_um.push(Gap::minimum_m(&u) * 1e6);
+            trace.gap_max_um.push(Gap::maximum_m(&u) * 1e6);
+            trace.pressure_mpa.push(pressure * 1e-6);
+            trace.loss_w.push(y[BearingOutput::Loss.index()]);
+            trace.dissipation_w.push(y[BearingOutput::Dissipation.index()]);
+            trace.side_flow_l_min.push(y[BearingOutput::SideFlow.index()] / L_MIN);
+            trace.load_kn.push(model.drive(at.t_s).load_n.map(|f| f * 1e-3));
+            if pressure > highest {
+                highest = pressure;
+                let map = film.pressure_map_pa(&u, q);
+                trace.map_mpa =
+                    map.into_iter().map(|row| row.into_iter().map(|p| p * 1e-6).collect()).collect();
+            }
+        }
+        trace
+    }
+}
+
+/// Extrema of one case from its curves.
+pub(super) fn orbit_report(model: &JournalBearing, orbit: &Orbit, c: &Curves) -> OrbitReport {
+    let extreme = |series: &[f64], sign: f64| {
+        let best = series.iter().enumerate().max_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1)));
+        let (n, value) = best.map_or((0, f64::NAN), |(n, v)| (n, *v));
+        Extremum { value, crank_angle_deg: c.crank_angle_deg[n] }
+    };
+    let load: Vec<f64> =
+        orbit.outputs.iter().map(|y| y[BearingOutput::SpecificLoad.index()] * 1e-6).collect();
+    OrbitReport {
+        bearing: c.bearing.clone(),
+        operating_point: c.operating_point.clone(),
+        min_film_thickness_um: extreme(&c.film_min_um, -1.0),
+        max_gap_um: extreme(&c.gap_max_um, 1.0),
+        max_film_pressure_mpa: extreme(&c.pressure_max_mpa, 1.0),
+        max_specific_load_mpa: extreme(&load, 1.0),
+        max_friction_loss_w: extreme(&c.loss_w, 1.0),
+        mean_side_flow_l_min: c.side_flow_l_min.iter().sum::<f64>() / c.side_flow_l_min.len() as f64,
+        viscosity_mpa_s: model.viscosity_pa_s() * 1e3,
+        steps: orbit.steps(),
+        cycles: orbit.cycles,
+        periodicity: orbit.periodicity,
+    }
+}
+
+/// Cells over all steps at which the film has a kink.
+pub(super) fn weakly_active(model: &JournalBearing, orbit: &Orbit) -> usize {
+    let mut rate = vec![0.0; model.states()];
+    (0..orbit.steps())
+        .map(|n| {
+            orbit.rate(model, n, &mut rate);
+            let at = At { t_s: orbit.time_s(n), z: orbit.state(n, 0), rate: &rate };
+            model.setup().film.weakly_active(&model.film_input(at), model.film_unknowns(at.z))
+        })
+        .sum()
+}

@@ -1,0 +1,341 @@
+//! The run: simulate the start, search, look at what was found, prove the gradient there.
+
+use super::build::{Plan, plan};
+use super::check::Study;
+use super::file::FilmModelName;
+use super::observe;
+use crate::gradient::{GradientTable, taylor_table};
+use crate::optimise::{Evaluated, EvaluationError, Minimum, Outcome, Sense, minimise};
+use crate::report::{
+    Assumption, AtBound, CaseLoss, ConstraintReport, CostReport, Curves, DesignValue, Findings,
+    GradientReport, GradientRow, KktReport, ObjectiveReport, OutcomeReport, Provenance, REPORT_FORMAT,
+    Report,
+};
+use crate::run::{Cancel, Event, RunContext};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A parameter closer to a bound than this share of its box stands at it.
+const AT_BOUND: f64 = 1e-6;
+/// A constraint whose multiplier exceeds this share of the objective is active.
+const ACTIVE: f64 = 1e-6;
+/// First step (relative) and number of steps of the Taylor test.
+const TAYLOR: (f64, usize) = (4e-4, 5);
+
+/// Runs a study to its end, whatever that is: failures to converge are outcomes in the report.
+pub fn run(study: &Study, context: RunContext<'_>) -> Findings {
+    let began = Instant::now();
+    let stage = |name: &str| context.progress.tell(&Event::Stage { name: name.to_owned() });
+    stage("optimising");
+    let search = match plan(study, study.engine, context) {
+        Ok(plan) => match minimise(&plan.problem, &plan.start, study.optimiser) {
+            Ok(minimum) => Ok((plan, minimum)),
+            Err(e) => Err(e.to_string()),
+        },
+        Err(e) => Err(e.to_string()),
+    };
+    let (plan, minimum) = match search {
+        Ok(found) => found,
+        Err(reason) => return failed(study, reason, began),
+    };
+    // A cancelled run still reports what is known: what follows must not be cancelled again.
+    let patient = Cancel::default();
+    let context = if minimum.outcome == Outcome::Cancelled {
+        RunContext { cancel: &patient, ..context }
+    } else {
+        context
+    };
+    stage("checking the design");
+    let known = minimum.values.as_ref().and_then(|_| revisit(study, &plan, &minimum, context));
+    report(study, &plan, &minimum, known, context, began)
+}
+
+/// Cycles at start and optimum.
+struct Known {
+    start: Option<Arc<Evaluated>>,
+    optimum: Arc<Evaluated>,
+}
+
+fn revisit(study: &Study, search: &Plan, minimum: &Minimum, context: RunContext<'_>) -> Option<Known> {
+    if !context.cancel.is_cancelled() && minimum.outcome != Outcome::Cancelled {
+        let optimum = search.problem.evaluated(&minimum.x).ok()?;
+        return Some(Known { start: search.problem.evaluated(&search.start).ok(), optimum });
+    }
+    // The search holds a flag that is up; a plan of its own simulates the two designs that are reported.
+    let fresh = plan(study, study.engine, context).ok()?;
+    let optimum = fresh.problem.evaluated(&minimum.x).ok()?;
+    Some(Known { start: fresh.problem.evaluated(&search.start).ok(), optimum })
+}
+
+fn report(
+    study: &Study,
+    plan: &Plan,
+    minimum: &Minimum,
+    known: Option<Known>,
+    context: RunContext<'_>,
+    began: Instant,
+) -> Findings {
+    let mut findings = blank(study, minimum.outcome, minimum.failures.clone());
+    let report = &mut findings.report;
+    report.design = design(study, &minimum.x);
+    report.kkt.residual = minimum.kkt.is_finite().then_some(minimum.kkt);
+    report.history = minimum.history.clone();
+    if let Some(known) = &known {
+        report.objective = objective(study, plan, known);
+        report.constraints = constraints(study, plan, minimum, &known.optimum);
+        let start = known.start.as_deref();
+        let all: Vec<Curves> = (0..plan.cases.len())
+            .filter_map(|c| observe::curves(study, plan, c, &minimum.x, &known.optimum, start))
+            .collect();
+        for (case, c) in all.iter().enumerate() {
+            if let Ok(model) = plan.problem.model(case, &minimum.x) {
+                report.orbit.push(observe::orbit_report(&model, &known.optimum.orbits[case], c));
+            }
+        }
+        if minimum.outcome != Outcome::Cancelled {
+            report.gradient = gradient(study, plan, &minimum.x, &known.optimum, context).ok();
+        }
+        findings.curves = all;
+    }
+    let (simulations, gradients) = plan.problem.costs();
+    let total = simulations + gradients;
+    findings.report.cost = CostReport {
+        total,
+        gradients,
+        gradient_calls: minimum.gradients,
+        seconds: began.elapsed().as_secs_f64(),
+    };
+    findings
+}
+
+fn failed(study: &Study, reason: String, began: Instant) -> Findings {
+    let mut findings = blank(study, Outcome::StartFailed, vec![reason]);
+    let start: Vec<f64> = study.parameters.iter().map(|p| p.start).collect();
+    findings.report.design = design(study, &start);
+    findings.report.cost.seconds = began.elapsed().as_secs_f64();
+    findings
+}
+
+/// A report without results.
+fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
+    refused.dedup();
+    let text = |given: &super::Given<String>| given.value().cloned();
+    let report = Report {
+        schema_version: REPORT_FORMAT.to_owned(),
+        study_hash: study.hash.clone(),
+        title: text(&study.file.title).unwrap_or_default(),
+        question: text(&study.file.question),
+        outcome: OutcomeReport { status, advice: status.advice().to_owned(), refused },
+        design: Vec::new(),
+        objective: ObjectiveReport {
+            quantity: "weighted mean friction loss of all bearings, W".to_owned(),
+            start: None,
+            optimum: None,
+            saving_percent: None,
+            operating_points: Vec::new(),
+        },
+        constraints: Vec::new(),
+        kkt: KktReport { residual: None, tolerance: study.optimiser.tolerance },
+        gradient: None,
+        orbit: Vec::new(),
+        history: Vec::new(),
+        cost: CostReport {
+            total: Default::default(),
+            gradients: Default::default(),
+            gradient_calls: 0,
+            seconds: 0.0,
+        },
+        assumptions: assumptions(study),
+        provenance: Provenance {
+            program: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            methods: methods(study),
+            study: study.to_json(),
+        },
+    };
+    Findings { report, curves: Vec::new() }
+}
+
+fn design(study: &Study, x: &[f64]) -> Vec<DesignValue> {
+    let value = |(p, x): (&super::ParameterPlan, &f64)| {
+        let shown = |v: f64| p.variable.shown(v);
+        let near = AT_BOUND * (p.upper - p.lower);
+        let at_bound = if *x <= p.lower + near {
+            AtBound::Lower
+        } else if *x >= p.upper - near {
+            AtBound::Upper
+        } else {
+            AtBound::No
+        };
+        DesignValue {
+            name: p.name.clone(),
+            value: shown(*x),
+            unit: p.variable.unit.to_owned(),
+            start: shown(p.start),
+            lower: shown(p.lower),
+            upper: shown(p.upper),
+            at_bound,
+        }
+    };
+    study.parameters.iter().zip(x).map(value).collect()
+}
+
+fn objective(study: &Study, plan: &Plan, known: &Known) -> ObjectiveReport {
+    let total = |at: &Evaluated| observe::total_loss(study, &plan.cases, at);
+    let start = known.start.as_deref().map(total);
+    let optimum = total(&known.optimum);
+    let operating_points = plan.cases.iter().enumerate().map(|(c, label)| CaseLoss {
+        operating_point: study.points[label.point].name.clone(),
+        bearing: study.bearings[label.bearing].name.clone(),
+        count: study.bearings[label.bearing].count,
+        weight: study.points[label.point].weight,
+        start: known.start.as_ref().map(|s| observe::loss(&s.orbits[c])),
+        optimum: Some(observe::loss(&known.optimum.orbits[c])),
+    });
+    ObjectiveReport {
+        quantity: "weighted mean friction loss of all bearings, W".to_owned(),
+        start,
+        optimum: Some(optimum),
+        saving_percent: start.map(|s| 100.0 * (1.0 - optimum.total_w / s.total_w)),
+        operating_points: operating_points.collect(),
+    }
+}
+
+fn constraints(study: &Study, plan: &Plan, minimum: &Minimum, at: &Evaluated) -> Vec<ConstraintReport> {
+    let objective = minimum.values.as_ref().map_or(1.0, |v| v.objective.abs());
+    let row = |(k, label): (usize, &super::LimitLabel)| {
+        let (c, case) = (&study.constraints[label.constraint], plan.cases[label.case]);
+        let (unit, scale) = c.quantity.unit();
+        let (smooth, exact) = c.quantity.of_cycle(study.sharpness);
+        let orbit = &at.orbits[label.case];
+        let multiplier = minimum.multipliers.inequalities.get(k).copied().unwrap_or(0.0);
+        let value = orbit.value(&smooth);
+        let excess = match c.sense {
+            Sense::AtLeast => 1.0 - value / c.limit,
+            Sense::AtMost => value / c.limit - 1.0,
+        };
+        ConstraintReport {
+            quantity: c.quantity.key().to_owned(),
+            bearing: study.bearings[case.bearing].name.clone(),
+            operating_point: study.points[case.point].name.clone(),
+            sense: if c.sense == Sense::AtLeast { "at least" } else { "at most" }.to_owned(),
+            value: Some(value / scale),
+            exact_value: Some(orbit.value(&exact) / scale),
+            limit: c.limit / scale,
+            unit: unit.to_owned(),
+            active: multiplier > ACTIVE * objective,
+            met: excess <= study.optimiser.tolerance,
+            price_w_per_unit: multiplier / c.limit * scale,
+        }
+    };
+    plan.limits.iter().enumerate().map(row).collect()
+}
+
+fn gradient(
+    study: &Study,
+    plan: &Plan,
+    x: &[f64],
+    at: &Evaluated,
+    context: RunContext<'_>,
+) -> Result<GradientReport, EvaluationError> {
+    let tables = plan.problem.tables(x)?;
+    let mut rows = Vec::new();
+    let mut weakly_active_cells = 0;
+    for (c, table) in tables.iter().enumerate() {
+        let model = plan.problem.model(c, x)?;
+        weakly_active_cells += observe::weakly_active(&model, &at.orbits[c]);
+        rows.extend(case_rows(study, plan, c, x, at, table, context));
+    }
+    let closure = tables.iter().fold(0.0f64, |a, t| a.max(t.closure));
+    Ok(GradientReport { engine: study.engine, rows, closure, weakly_active_cells })
+}
+
+fn case_rows(
+    study: &Study,
+    plan: &Plan,
+    c: usize,
+    x: &[f64],
+    at: &Evaluated,
+    table: &GradientTable,
+    context: RunContext<'_>,
+) -> Vec<GradientRow> {
+    let case = &plan.problem.cases()[c];
+    // A direction without symmetry, so that errors of single parameters cannot cancel.
+    let direction: Vec<f64> = (0..case.variables.len()).map(|j| [0.6, -0.8, 1.0, 0.4][j % 4]).collect();
+    let proof = plan.problem.model(c, x).ok().and_then(|model| {
+        let orbit = &at.orbits[c];
+        taylor_table(
+            &model,
+            orbit,
+            &case.options,
+            &case.quantities,
+            table,
+            &direction,
+            TAYLOR,
+            context.cancel,
+        )
+        .ok()
+    });
+    plan.quantities[c]
+        .iter()
+        .enumerate()
+        .map(|(k, quantity)| {
+            let (unit, scale) = quantity.unit();
+            let check = proof.as_ref().map(|p| p[k].clone()).unwrap_or_default();
+            let parameters: Vec<&super::ParameterPlan> =
+                case.variables.iter().map(|&j| &study.parameters[j]).collect();
+            GradientRow {
+                quantity: quantity.key().to_owned(),
+                bearing: study.bearings[plan.cases[c].bearing].name.clone(),
+                operating_point: study.points[plan.cases[c].point].name.clone(),
+                parameters: parameters.iter().map(|p| p.name.clone()).collect(),
+                values: table.rows[k]
+                    .iter()
+                    .zip(&parameters)
+                    .map(|(g, p)| g / scale * p.variable.scale.0)
+                    .collect(),
+                units: parameters
+                    .iter()
+                    .map(|p| format!("{unit}/{}", p.variable.unit.replace("degC", "K")))
+                    .collect(),
+                verdict: crate::gradient::verdict(&check),
+                check,
+            }
+        })
+        .collect()
+}
+
+fn assumptions(study: &Study) -> Vec<Assumption> {
+    let values = study.to_json();
+    let map = study.file.assumptions.value().cloned().unwrap_or_default();
+    map.into_iter()
+        .map(|(key, reason)| {
+            let found = values.pointer(&format!("/{}", key.replace('.', "/")));
+            let value =
+                found.map_or_else(String::new, |v| v.as_str().map_or_else(|| v.to_string(), str::to_owned));
+            Assumption { key, value, reason }
+        })
+        .collect()
+}
+
+/// Laws and methods in use, with their sources.
+fn methods(study: &Study) -> Vec<String> {
+    let mut list = vec![match study.film.model {
+        FilmModelName::Reynolds => {
+            "Film: Reynolds (1886) equation by finite volumes; rupture after Swift (1932) and Stieber (1933)"
+        }
+        FilmModelName::Mobility => "Film: short bearing, Ocvirk (1952), Booker's mobility method (1965)",
+    }];
+    if matches!(study.viscosity, crate::laws::Viscosity::Walther { .. }) {
+        list.push("Oil: Walther (1931), ASTM D341, through the data sheet's two points");
+    }
+    list.extend([
+        "Load: rigid slider-crank at constant speed, two-mass connecting rod",
+        "Orbit: backward differences (Gear 1971) with constant steps, closed periodically",
+        "Gradient: discrete adjoint of the periodic orbit or its alternatives FW, BW, CEN, TRA",
+        "Optimiser: sequential quadratic programming (Nocedal and Wright 2006), damped BFGS (Powell 1978), sub-problem by \
+         Clarabel, framework argmin",
+        "Smooth extrema: power norm, on the safe side of the exact extremum",
+    ]);
+    list.into_iter().map(str::to_owned).collect()
+}
