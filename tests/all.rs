@@ -1,1 +1,11 @@
+//! One test program for all integration tests, so that the crate is linked once. Run it in release: `cargo test --release`.
 
+mod architecture;
+mod bad_studies;
+mod cli;
+mod common;
+mod film_derivatives;
+mod gradients;
+mod literature;
+mod main_job;
+mod orbits;

@@ -32,7 +32,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// Memory below this share of its start counts as gone.
-const CLOSED: f64 = 1e-14;
+const CLOSED: f64 = 1e-13;
 /// Sweeps over the cycle after which a memory is declared not to fade.
 const MOST_SWEEPS: usize = 50;
 

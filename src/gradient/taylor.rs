@@ -9,6 +9,9 @@ use crate::orbit::{Orbit, OrbitOptions, Quantity, settle};
 use crate::run::Cancel;
 use serde::{Deserialize, Serialize};
 
+/// Change below this (relative) is rounding.
+const ROUNDING: f64 = 1e-11;
+
 /// One step length of a Taylor test of one quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TaylorRow {
@@ -53,36 +56,51 @@ pub fn taylor_table<M: SensitiveDae>(
     Ok(tables)
 }
 
-/// Change below this (relative) is rounding.
-const ROUNDING: f64 = 1e-11;
-
-/// What a Taylor table says, in words.
+/// What a Taylor table says, in words. The finest steps decide: larger ones may cross a kink on their way.
 pub fn verdict(table: &[TaylorRow]) -> String {
-    let orders: Vec<f64> =
-        table.iter().filter(|r| r.remainder > 10.0 * ROUNDING).filter_map(|r| r.order).collect();
-    let linear =
-        !table.is_empty() && table.iter().all(|r| r.remainder <= 100.0 * ROUNDING.max(1e-4 * r.change));
-    let worst = orders.iter().copied().fold(f64::INFINITY, f64::min);
-    match table.len() {
-        0 => "not checked".to_owned(),
-        _ if linear && orders.iter().all(|o| *o < 1.5) => {
-            "exact: linear along this direction up to rounding".to_owned()
-        }
-        _ if orders.is_empty() => "exact: the remainder is rounding".to_owned(),
-        _ if worst >= 1.8 => format!("exact: the remainder falls with order {worst:.2} or better"),
-        _ => kink(table, &orders),
+    let telling: Vec<&TaylorRow> = table.iter().filter(|r| r.remainder > 10.0 * ROUNDING).collect();
+    if table.is_empty() {
+        return "not checked".to_owned();
     }
-}
-
-/// Order two between first and last step, but not at every step: pieces of the cavitation boundary are crossed on the way.
-fn kink(table: &[TaylorRow], orders: &[f64]) -> String {
-    let (first, last) = (table[0], table[table.len() - 1]);
-    let overall = (first.remainder / last.remainder).log2() / (first.step / last.step).log2();
-    if overall >= 1.7 {
+    if telling.len() < 2 {
+        return "exact: linear along this direction, the remainder is rounding".to_owned();
+    }
+    let orders: Vec<f64> = telling.iter().filter_map(|r| r.order).collect();
+    let good = orders.iter().rev().take_while(|o| **o >= 1.7).count();
+    let worst = orders.iter().rev().take(good).copied().fold(f64::INFINITY, f64::min);
+    if good == orders.len() {
+        return format!("exact: the remainder falls with order {worst:.2} or better");
+    }
+    if good >= 2 {
+        let below = telling[telling.len() - good].step;
         return format!(
-            "exact: order {overall:.2} over all steps; single steps cross a kink of the cavitation boundary"
+            "exact: order {worst:.2} or better from step {below:.0e} down; a larger step crosses a kink"
         );
     }
     let listed: Vec<String> = orders.iter().map(|o| format!("{o:.1}")).collect();
     format!("kink or error: the remainder falls with orders {}", listed.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(remainders: &[f64]) -> Vec<TaylorRow> {
+        let row = |(k, r): (usize, &f64)| TaylorRow {
+            step: 1e-3 / (1u64 << k) as f64,
+            change: 1e-3,
+            remainder: *r,
+            order: (k > 0).then(|| (remainders[k - 1] / r).log2()),
+        };
+        remainders.iter().enumerate().map(row).collect()
+    }
+
+    #[test]
+    fn verdicts_tell_right_from_wrong() {
+        assert!(verdict(&table(&[1.6e-5, 4e-6, 1e-6, 2.5e-7])).starts_with("exact: the remainder falls"));
+        assert!(verdict(&table(&[2e-7, 4e-6, 1e-6, 2.5e-7])).contains("a larger step crosses a kink"));
+        assert!(verdict(&table(&[8e-6, 4e-6, 2e-6, 1e-6])).starts_with("kink or error"));
+        assert!(verdict(&table(&[1e-15, 3e-16, 2e-15])).starts_with("exact: linear"));
+        assert_eq!(verdict(&[]), "not checked");
+    }
 }

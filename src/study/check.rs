@@ -491,7 +491,7 @@ fn orbit_options(o: &mut OrbitFile, faults: &mut Faults) -> OrbitOptions {
     faults.unknown::<OrbitFile>(&o.unknown, "orbit");
     let steps = faults.or(&mut o.steps_per_cycle, "orbit.steps_per_cycle", 720);
     let scheme = faults.or(&mut o.scheme, "orbit.scheme", SchemeName::Bdf2);
-    let tolerance = faults.or(&mut o.periodicity_tolerance, "orbit.periodicity_tolerance", 1e-10);
+    let tolerance = faults.or(&mut o.periodicity_tolerance, "orbit.periodicity_tolerance", 1e-12);
     let cycles = faults.or(&mut o.max_cycles, "orbit.max_cycles", 30);
     faults.range(
         Some(steps as f64),

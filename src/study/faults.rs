@@ -123,7 +123,7 @@ impl Faults {
     /// A number that must lie in a range; also notes numbers that are not finite.
     pub fn range(&mut self, value: Option<f64>, path: &str, ok: impl Fn(f64) -> bool, words: &str) {
         if let Some(v) = value.filter(|v| !v.is_finite() || !ok(*v)) {
-            self.add(path, format!("must be {words}, found {v}"));
+            self.add(path, format!("must be {words}, found {}", crate::report::short(v)));
         }
     }
 }

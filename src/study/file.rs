@@ -248,7 +248,7 @@ section! {
         steps_per_cycle: usize,
         /// "bdf2" (default) or "bdf1".
         scheme: SchemeName,
-        /// Difference of two cycles (relative to the clearance) that counts as settled. Default 1e-10.
+        /// Difference of two cycles (relative to the clearance) that counts as settled. Default 1e-12.
         periodicity_tolerance: f64,
         /// Cycles after which settling is given up. Default 30.
         max_cycles: usize,

@@ -195,14 +195,15 @@ pub(super) fn vee(
         |v| (0.0..1.0).contains(&v),
         "at least 0 and below 1",
     );
-    let given = faults.need(&file.throw_angles, &at("throw_angles"))?;
+    let given = faults.need(&file.throw_angles, &at("throw_angles"));
+    let order = faults.need(&file.firing_order, &at("firing_order"));
+    let (given, order) = (given?, order?);
     let angles: Vec<f64> = given
         .iter()
         .enumerate()
         .filter_map(|(i, a)| faults.need(a, &format!("{}[{i}]", at("throw_angles"))))
         .map(|a| a.si())
         .collect();
-    let order = faults.need(&file.firing_order, &at("firing_order"))?;
     let names: Vec<CylinderName> = order
         .iter()
         .enumerate()

@@ -20,7 +20,7 @@ const AT_BOUND: f64 = 1e-6;
 /// A constraint whose multiplier exceeds this share of the objective is active.
 const ACTIVE: f64 = 1e-6;
 /// First step (relative) and number of steps of the Taylor test.
-const TAYLOR: (f64, usize) = (4e-4, 5);
+const TAYLOR: (f64, usize) = (1e-4, 6);
 
 /// Runs a study to its end, whatever that is: failures to converge are outcomes in the report.
 pub fn run(study: &Study, context: RunContext<'_>) -> Findings {

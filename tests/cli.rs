@@ -1,0 +1,160 @@
+//! The command line as users meet it.
+
+use crate::common::{COARSE, here};
+use assert_cmd::Command;
+use std::path::PathBuf;
+use std::time::Duration;
+
+fn stribeck() -> Command {
+    let mut command = Command::cargo_bin("stribeck").unwrap();
+    command.timeout(Duration::from_secs(300)).env("NO_COLOR", "1");
+    command
+}
+
+/// A copy of the main study, changed as text, in a folder of its own with its data.
+fn study(folder: &tempfile::TempDir, changes: &[(&str, &str)]) -> PathBuf {
+    let mut text = std::fs::read_to_string(here("studies/operational-170x215.toml")).unwrap();
+    for (from, to) in changes {
+        assert!(text.contains(from));
+        text = text.replacen(from, to, 1);
+    }
+    std::fs::create_dir_all(folder.path().join("data")).unwrap();
+    let data = "data/engine_pressure_170x215_digitised.csv";
+    std::fs::copy(here("studies").join(data), folder.path().join(data)).unwrap();
+    let path = folder.path().join("study.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+const QUICK: (&str, &str) = ("[oil]", COARSE);
+
+#[test]
+fn run_writes_its_folder_and_ends_with_zero_for_a_converged_design() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("answer");
+    let file = study(&folder, &[QUICK]);
+    let run = stribeck().arg("run").arg(&file).arg("--out").arg(&out).assert().success();
+    let text = String::from_utf8_lossy(&run.get_output().stdout).into_owned();
+    for words in ["Converged", "big_end.width", "mean friction loss", "min-film-thickness", "report.html"] {
+        assert!(text.contains(words), "{words} in {text}");
+    }
+    assert!(!text.contains('\u{1b}'), "no colours into a pipe");
+    assert!(run.get_output().stderr.is_empty(), "no progress into a pipe");
+    for name in ["report.html", "report.json", "orbit.csv"] {
+        assert!(out.join(name).metadata().unwrap().len() > 1000, "{name}");
+    }
+    let orbit = std::fs::read_to_string(out.join("orbit.csv")).unwrap();
+    assert_eq!(orbit.lines().count(), 1 + 240);
+    let json = stribeck().arg("run").arg(&file).arg("--json").arg("--out").arg(&out).assert().success();
+    let printed: serde_json::Value = serde_json::from_slice(&json.get_output().stdout).unwrap();
+    assert_eq!(printed["outcome"]["status"], "converged");
+}
+
+#[test]
+fn outcomes_have_their_exit_codes() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("answer");
+    let infeasible = study(&folder, &[QUICK, ("at_least = \"3 um\"", "at_least = \"30 um\"")]);
+    stribeck().arg("run").arg(infeasible).arg("--out").arg(&out).assert().code(6);
+    let short = study(&folder, &[QUICK, ("[oil]", "[optimiser]\nmax_iterations = 1\n[oil]")]);
+    stribeck().arg("run").arg(short).arg("--out").arg(&out).assert().code(4);
+    let impossible = study(
+        &folder,
+        &[
+            QUICK,
+            ("steps_per_cycle = 240", "steps_per_cycle = 240\nmax_cycles = 2\nperiodicity_tolerance = 1e-14"),
+        ],
+    );
+    stribeck().arg("run").arg(impossible).arg("--out").arg(&out).assert().code(7);
+    assert!(out.join("report.html").exists(), "a failed start is reported too");
+    stribeck().arg("run").arg("no-such-file.toml").assert().code(1);
+    stribeck().arg("walk").assert().code(2);
+}
+
+#[test]
+fn a_checked_study_is_complete_and_checks_again_with_the_same_hash() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = study(&folder, &[]);
+    let first = stribeck().arg("check").arg(&file).assert().success().get_output().stdout.clone();
+    let text = String::from_utf8(first).unwrap();
+    for default in [
+        "cells_around = 72",
+        "scheme = \"bdf2\"",
+        "start = \"55 mm\"",
+        "engine = \"ADJ\"",
+        "piston_pin_offset = \"0 mm\"",
+    ] {
+        assert!(text.contains(default), "{default}");
+    }
+    std::fs::write(&file, &text).unwrap();
+    let second = stribeck().arg("check").arg(&file).assert().success().get_output().stdout.clone();
+    assert_eq!(text, String::from_utf8(second).unwrap());
+    let json =
+        stribeck().arg("check").arg("--json").arg(&file).assert().success().get_output().stdout.clone();
+    let as_json = folder.path().join("study.json");
+    std::fs::write(&as_json, json).unwrap();
+    let third = stribeck().arg("check").arg(&as_json).assert().success().get_output().stdout.clone();
+    assert_eq!(text, String::from_utf8(third).unwrap());
+}
+
+#[test]
+fn the_schema_accepts_the_study_and_refuses_what_the_check_refuses() {
+    let schema = stribeck().arg("schema").assert().success().get_output().stdout.clone();
+    let validator = jsonschema::validator_for(&serde_json::from_slice(&schema).unwrap()).unwrap();
+    let file = here("studies/operational-170x215.toml");
+    let json = stribeck().arg("check").arg("--json").arg(file).assert().success().get_output().stdout.clone();
+    let mut study: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let mistakes: Vec<String> =
+        validator.iter_errors(&study).map(|e| format!("{e} at {}", e.instance_path)).collect();
+    assert!(mistakes.is_empty(), "{mistakes:?}");
+    study["machine"]["bore"] = 170.into();
+    assert!(!validator.is_valid(&study), "a bare number");
+    study["machine"]["bore"] = "170 mm".into();
+    study["machine"]["bores"] = "170 mm".into();
+    assert!(!validator.is_valid(&study), "an unknown key");
+}
+
+#[test]
+fn gradient_prints_the_engines_side_by_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = study(&folder, &[QUICK]);
+    let all = stribeck().arg("gradient").arg(&file).args(["--engine", "all"]).assert().success();
+    let text = String::from_utf8_lossy(&all.get_output().stdout).into_owned();
+    for words in
+        ["FW", "BW", "CEN", "TRA", "ADJ", "error against ADJ", "factorisations", "d mean-friction-loss"]
+    {
+        assert!(text.contains(words), "{words}");
+    }
+    let one =
+        stribeck().arg("gradient").arg(&file).arg("--json").assert().success().get_output().stdout.clone();
+    let json: serde_json::Value = serde_json::from_slice(&one).unwrap();
+    assert_eq!(json[0]["rows"][0]["engine"], "ADJ");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_writes_what_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, out) = (study(&folder, &[]), folder.path().join("answer"));
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("stribeck"))
+        .arg("run")
+        .arg(&file)
+        .arg("--out")
+        .arg(&out)
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(Duration::from_secs(6));
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap();
+    assert_eq!(report["outcome"]["status"], "cancelled");
+    assert!(
+        report["objective"]["optimum"]["total_w"].as_f64().unwrap() > 0.0,
+        "the best design so far is there"
+    );
+    assert!(out.join("report.html").exists() && out.join("orbit.csv").exists());
+}

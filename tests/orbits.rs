@@ -1,0 +1,132 @@
+//! Periodic orbits: order in the time step, force balance, independence of the start of the cycle.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use stribeck::cranktrain::{
+    BearingLoad, BearingOutput, BearingParameter, BearingSetup, JournalBearing, LoadTable,
+};
+use stribeck::dae::{At, Dae};
+use stribeck::film::{Axial, FilmModel, Mesh, Reynolds, ShortFilm};
+use stribeck::laws::Viscosity;
+use stribeck::math::PeriodicSpline;
+use stribeck::orbit::{Orbit, OrbitError, OrbitOptions, Quantity, Reduction, Scheme, settle};
+use stribeck::run::Cancel;
+
+const CYCLE: f64 = 2.0 * TAU;
+
+/// A smooth load over two turns, begun at a share of the cycle, N.
+fn load(begin: f64) -> BearingLoad {
+    let knots: Vec<f64> = (0..360).map(|k| CYCLE * k as f64 / 360.0).collect();
+    let angle = |a: &f64| a + begin * CYCLE;
+    let x = knots.iter().map(|a| 8e3 + 3e3 * (angle(a) / 2.0).cos()).collect();
+    let y = knots.iter().map(|a| 2e3 * angle(a).sin()).collect();
+    BearingLoad::Table(LoadTable {
+        x: PeriodicSpline::new(knots.clone(), x, CYCLE).unwrap(),
+        y: PeriodicSpline::new(knots, y, CYCLE).unwrap(),
+    })
+}
+
+fn model(film: Arc<dyn FilmModel>, load: BearingLoad, journal_mass_kg: f64) -> JournalBearing {
+    JournalBearing::new(BearingSetup {
+        film,
+        load: Arc::new(load),
+        speed_rad_s: 150.0,
+        viscosity: Viscosity::Constant { viscosity_pa_s: 0.02 },
+        film_rise_k: 0.0,
+        journal_mass_kg,
+        width_m: 0.03,
+        diameter_m: 0.06,
+        diametral_clearance_m: 70e-6,
+        inlet_temperature_k: 350.0,
+        parameters: vec![BearingParameter::Width, BearingParameter::DiametralClearance],
+    })
+    .unwrap()
+}
+
+fn options(steps: usize, scheme: Scheme) -> OrbitOptions {
+    OrbitOptions { steps, scheme, periodicity_tolerance: 1e-13, max_cycles: 200 }
+}
+
+fn solve(model: &JournalBearing, steps: usize, scheme: Scheme) -> Orbit {
+    settle(model, &options(steps, scheme), None, &Cancel::default()).unwrap()
+}
+
+const LOSS: Quantity = Quantity { output: 0, reduction: Reduction::Mean };
+
+#[test]
+fn observed_order_in_the_step_is_that_of_the_formula() {
+    // The short film is smooth in time: no cell enters or leaves a cavity.
+    let film: Arc<dyn FilmModel> = Arc::new(ShortFilm::new(200.0));
+    for (scheme, wanted) in [(Scheme::Bdf1, 1.0), (Scheme::Bdf2, 2.0)] {
+        let bearing = model(film.clone(), load(0.0), 0.0);
+        let loss = |steps| solve(&bearing, steps, scheme).value(&LOSS);
+        let (a, b, c) = (loss(360), loss(720), loss(1440));
+        let order = ((a - b) / (b - c)).abs().log2();
+        assert!((order - wanted).abs() <= 0.1, "{scheme:?}: order {order} from {a} {b} {c}");
+    }
+}
+
+#[test]
+fn film_force_balances_the_load_at_every_step() {
+    let films: [Arc<dyn FilmModel>; 2] =
+        [Arc::new(ShortFilm::new(200.0)), Arc::new(Reynolds::new(Mesh::new(36, 4, Axial::Half)))];
+    for film in films {
+        let bearing = model(film, load(0.0), 0.0);
+        let orbit = solve(&bearing, 360, Scheme::Bdf2);
+        let (mut rate, mut r) = (vec![0.0; bearing.states()], vec![0.0; bearing.states()]);
+        for n in 0..orbit.steps() {
+            orbit.rate(&bearing, n, &mut rate);
+            bearing.residual(At { t_s: orbit.time_s(n), z: orbit.state(n, 0), rate: &rate }, &mut r);
+            let [x, y] = bearing.drive(orbit.time_s(n)).load_n;
+            let force = &r[bearing.memory()[0]..];
+            assert!(force[0].hypot(force[1]) < 1e-10 * x.hypot(y), "step {n}: {force:?}");
+        }
+    }
+}
+
+#[test]
+fn the_orbit_does_not_depend_on_where_the_cycle_starts() {
+    let film: Arc<dyn FilmModel> = Arc::new(ShortFilm::new(200.0));
+    let first = solve(&model(film.clone(), load(0.0), 0.0), 360, Scheme::Bdf2);
+    let later = solve(&model(film, load(0.25), 0.0), 360, Scheme::Bdf2);
+    for output in BearingOutput::ALL {
+        for n in 0..360 {
+            let (a, b) = (first.outputs[(n + 90) % 360][output.index()], later.outputs[n][output.index()]);
+            assert!((a - b).abs() <= 1e-8 * a.abs().max(b.abs()), "{output:?} at {n}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_journal_with_mass_settles_and_a_light_one_moves_like_a_massless_one() {
+    let film: Arc<dyn FilmModel> = Arc::new(Reynolds::new(Mesh::new(36, 4, Axial::Half)));
+    let loss = |mass| solve(&model(film.clone(), load(0.0), mass), 360, Scheme::Bdf2).value(&LOSS);
+    let (none, light, heavy) = (loss(0.0), loss(0.01), loss(20.0));
+    assert!((light / none - 1.0).abs() < 1e-4, "{none} {light}");
+    assert!((heavy / none - 1.0).abs() > 1e-6, "{none} {heavy}");
+}
+
+#[test]
+fn a_warm_start_gives_the_same_cycle_with_less_work() {
+    let bearing = model(Arc::new(Reynolds::new(Mesh::new(36, 4, Axial::Half))), load(0.0), 0.0);
+    let cold = solve(&bearing, 360, Scheme::Bdf2);
+    let near = bearing.with_parameters(&[0.0301, 70.2e-6]).unwrap();
+    let warm = settle(&near, &options(360, Scheme::Bdf2), Some(&cold), &Cancel::default()).unwrap();
+    let fresh = solve(&near, 360, Scheme::Bdf2);
+    assert!((warm.value(&LOSS) / fresh.value(&LOSS) - 1.0).abs() < 1e-9);
+    assert!(warm.cost.newton_iterations < fresh.cost.newton_iterations, "{:?} {:?}", warm.cost, fresh.cost);
+    assert_eq!(warm.cost.simulations, 1);
+}
+
+#[test]
+fn endings_are_told_apart() {
+    let bearing = model(Arc::new(ShortFilm::new(200.0)), load(0.0), 0.0);
+    let impatient = OrbitOptions { max_cycles: 1, ..options(360, Scheme::Bdf2) };
+    let end = settle(&bearing, &impatient, None, &Cancel::default());
+    assert!(matches!(end, Err(OrbitError::NotPeriodic { cycles: 1, .. })));
+    let cancel = Cancel::default();
+    cancel.cancel();
+    let end = settle(&bearing, &options(360, Scheme::Bdf2), None, &cancel);
+    assert!(matches!(end, Err(OrbitError::Cancelled(_))));
+    assert!(bearing.with_parameters(&[-1.0, 70e-6]).is_err());
+}
