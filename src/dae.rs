@@ -65,14 +65,10 @@ pub trait LinearisedDae: Dae {
 pub trait SensitiveDae: LinearisedDae {
     /// Replaces each column of `rhs` by the solution with the transposed matrix.
     fn solve_transposed(&self, factors: &Self::Factors, rhs: &mut [f64]);
-    /// `out += F_z' v`.
-    fn rate_times(&self, at: At, v: &[f64], out: &mut [f64]);
-    /// `out += F_z'^T v`.
-    fn rate_transposed_times(&self, at: At, v: &[f64], out: &mut [f64]);
-    /// `out += F_p dp`.
-    fn parameter_times(&self, at: At, dp: &[f64], out: &mut [f64]);
-    /// `out += F_p^T v`.
-    fn parameter_transposed_times(&self, at: At, v: &[f64], out: &mut [f64]);
+    /// `out += F_z' rate + F_p dp`.
+    fn times(&self, at: At, rate: &[f64], dp: &[f64], out: &mut [f64]);
+    /// `rate += F_z'^T v` and `p += F_p^T v`.
+    fn transposed_times(&self, at: At, v: &[f64], rate: &mut [f64], p: &mut [f64]);
     /// Writes `dy = g_z dz + g_z' drate + g_p dp`.
     fn output_tangent(&self, at: At, direction: Direction, dy: &mut [f64]);
     /// Adds `g_z^T w`, `g_z'^T w` and `g_p^T w` to the three parts of `out`.

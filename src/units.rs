@@ -72,8 +72,12 @@ impl<D: Dimension> FromStr for Measure<D> {
         if unit.is_empty() {
             return Err(Self::error(format!("; \"{trimmed}\" has no unit")));
         }
-        let unit =
-            unit.replace('µ', "u").replace('°', "deg").replace('²', "2").replace('³', "3").replace('·', " ");
+        let unit = unit
+            .replace(['µ', 'μ'], "u")
+            .replace('°', "deg")
+            .replace('²', "2")
+            .replace('³', "3")
+            .replace('·', " ");
         let (_, size, offset) = D::UNITS
             .iter()
             .find(|u| u.0 == unit)
@@ -118,11 +122,12 @@ impl<D: Dimension> schemars::JsonSchema for Measure<D> {
     }
 
     fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        let units: Vec<String> = D::UNITS.iter().map(|u| u.0.replace('/', "\\/")).collect();
+        let units: Vec<&str> = D::UNITS.iter().map(|u| u.0).collect();
+        let spelled = units.join("|").replace('u', "[uµμ]").replace("deg", "(deg|°)").replace('/', "\\/");
         schemars::json_schema!({
             "type": "string",
-            "description": format!("Text: {} with its unit ({})", D::NAME, units.join(", ").replace("\\/", "/")),
-            "pattern": format!("^\\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\\s*({})\\s*$", units.join("|")),
+            "description": format!("Text: {} with its unit ({})", D::NAME, units.join(", ")),
+            "pattern": format!("^\\s*[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?\\s*({spelled})\\s*$"),
             "examples": [D::EXAMPLE],
         })
     }

@@ -9,7 +9,7 @@ fn main_text() -> String {
 }
 
 fn errors(text: &str) -> StudyErrors {
-    Study::read(text, Format::Toml, Some(&here("studies"))).err().expect("the study has mistakes")
+    Study::read(text, Format::Toml, Some(&here("studies"))).expect_err("the study has mistakes")
 }
 
 #[test]

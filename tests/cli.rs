@@ -35,7 +35,7 @@ fn run_writes_its_folder_and_ends_with_zero_for_a_converged_design() {
     let file = study(&folder, &[QUICK]);
     let run = stribeck().arg("run").arg(&file).arg("--out").arg(&out).assert().success();
     let text = String::from_utf8_lossy(&run.get_output().stdout).into_owned();
-    for words in ["Converged", "big_end.width", "mean friction loss", "min-film-thickness", "report.html"] {
+    for words in ["converged", "big_end.width", "mean friction loss", "min-film-thickness", "report.html"] {
         assert!(text.contains(words), "{words} in {text}");
     }
     assert!(!text.contains('\u{1b}'), "no colours into a pipe");

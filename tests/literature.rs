@@ -157,12 +157,12 @@ fn short_bearing_closed_forms() {
 fn booker_mobility_of_the_centred_journal_and_his_fit_near_the_wall() {
     // Mobility along the load: M = (1 - xi)^(5/2) (L/D)^-2 / pi (Booker 1971), exact at the centre.
     let film = ShortFilm::new(200.0);
-    for (xi, tolerance) in [(0.0, 1e-12), (0.4, 0.03), (0.8, 0.06)] {
+    for (xi, tolerance) in [(0.0f64, 1e-12), (0.4, 0.03), (0.8, 0.06)] {
         let mut u = bearing(xi, 0.25, 0.0);
         u.velocity_m_s = [1e-3, 0.0];
         let force = size(steady(&film, &u).unwrap().output.force_n);
         let ratio: f64 = u.width_m / u.diameter_m;
-        let mobility = (1.0 - xi as f64).powf(2.5) / (ratio * ratio) / std::f64::consts::PI;
+        let mobility = (1.0 - xi).powf(2.5) / (ratio * ratio) / std::f64::consts::PI;
         let speed = u.clearance_m * force * (2.0 * u.clearance_m / u.diameter_m).powi(2)
             / (u.width_m * u.diameter_m * u.viscosity_pa_s)
             * mobility;

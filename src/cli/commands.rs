@@ -70,7 +70,7 @@ fn cancel_on_ctrl_c() -> Cancel {
             std::process::exit(130);
         }
         flag.cancel();
-        eprintln!("\nstopping; the best design so far is being written (press again to stop at once)");
+        eprintln!("\nstopping, what is known is being written (press again to stop at once)");
     };
     if ctrlc::set_handler(handler).is_err() {
         eprintln!("warning: Ctrl-C will end this run without a report");
@@ -79,7 +79,7 @@ fn cancel_on_ctrl_c() -> Cancel {
 }
 
 pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
-    let study = read(&a.file, false)?;
+    let study = read(&a.file, a.json)?;
     let name = a.file.file_stem().unwrap_or_default();
     let folder = a.out.clone().unwrap_or_else(|| Path::new("out").join(name));
     std::fs::create_dir_all(&folder).map_err(|e| Stop::File(folder.clone(), e))?;
@@ -114,7 +114,7 @@ pub(super) fn schema(a: &SchemaArguments) -> Result<u8, Stop> {
 }
 
 pub(super) fn gradient(a: &GradientArguments) -> Result<u8, Stop> {
-    let study = read(&a.file, false)?;
+    let study = read(&a.file, a.json)?;
     let engines = a.engine.map_or_else(|| vec![study.engine], super::EngineChoice::engines);
     let sweep = if a.sweep { Sweep::wide() } else { Sweep(vec![study.perturbation]) };
     let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(0));

@@ -1,5 +1,6 @@
 //! Short tables for the terminal.
 
+use crate::optimise::Outcome;
 use crate::report::{AtBound, Report, short};
 use crate::study::{EngineComparison, EngineRow};
 use comfy_table::{CellAlignment, Table, presets};
@@ -21,11 +22,14 @@ fn maybe(value: Option<f64>) -> String {
 
 /// Design, limits and loss of a run.
 pub(super) fn summary(report: &Report, colour: bool) -> String {
-    let status = format!("{:?}", report.outcome.status);
-    let shown = match (colour, status.as_str()) {
-        (true, "Converged") => status.green().bold().to_string(),
+    let status = match serde_json::to_value(report.outcome.status) {
+        Ok(serde_json::Value::String(name)) => name.replace('-', " "),
+        _ => String::new(),
+    };
+    let shown = match (colour, report.outcome.status) {
+        (true, Outcome::Converged) => status.green().bold().to_string(),
         (true, _) => status.red().bold().to_string(),
-        (false, _) => status.clone(),
+        (false, _) => status,
     };
     let mut text = format!("{}\n{shown}: {}\n\n", report.title, report.outcome.advice);
     for reason in &report.outcome.refused {
@@ -54,10 +58,10 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
     }
     if let (Some(start), Some(optimum)) = (&report.objective.start, &report.objective.optimum) {
         text += &format!(
-            "mean friction loss: {} W at the start, {} W at the design, {} % saved\n",
+            "mean friction loss: {} W at the start, {} W at the design{}\n",
             short(start.total_w),
             short(optimum.total_w),
-            maybe(report.objective.saving_percent)
+            report.objective.saving_percent.map_or_else(String::new, |s| format!(", {} % saved", short(s)))
         );
     }
     text += &format!(
@@ -74,6 +78,7 @@ fn limits(report: &Report) -> Table {
     let mut limits = table(&["limit", "bearing, point", "value", "limit", "unit", "state", "price [W/unit]"]);
     for c in &report.constraints {
         let state = match (c.met, c.active) {
+            _ if c.value.is_none() => "not known",
             (false, _) => "violated",
             (true, true) => "active",
             (true, false) => "",
@@ -85,7 +90,7 @@ fn limits(report: &Report) -> Table {
             format!("{} {}", c.sense, short(c.limit)),
             c.unit.clone(),
             state.to_owned(),
-            if c.active { short(c.price_w_per_unit) } else { String::new() },
+            c.price_w_per_unit.filter(|_| c.active).map(short).unwrap_or_default(),
         ]);
     }
     limits

@@ -349,18 +349,16 @@ impl LinearisedDae for JournalBearing {
         let (u, q, n) = (self.film_input(at), self.film_unknowns(at.z), self.n);
         let film = &self.setup.film;
         let system = &mut into.system;
-        film.stencil(&u, q, &mut into.stencil);
         system.columns.fill(0.0);
         system.rows.fill(0.0);
         system.corner.fill(0.0);
+        let units = [[1.0, 0.0], [0.0, 1.0]];
+        let motions = units.map(|unit| self.input_change(unit, unit.map(|v| alpha * v), &[]));
+        film.linearise(&u, q, &motions, &mut into.stencil, &mut system.columns[..2 * n]);
         let (sign, row) = self.force_row();
         let row = row - n;
-        for axis in 0..2 {
-            let mut unit = [0.0; 2];
-            unit[axis] = 1.0;
-            let du = self.input_change(unit, unit.map(|v| alpha * v), &[]);
-            film.residual_tangent(&u, q, &du, &mut system.columns[axis * n..(axis + 1) * n]);
-            let df = film.force_tangent(&u, q, &du);
+        for (axis, (unit, du)) in units.iter().zip(&motions).enumerate() {
+            let df = film.force_tangent(&u, q, du);
             system.corner[(row, axis)] += sign * df[0];
             system.corner[(row + 1, axis)] += sign * df[1];
             let k = row + axis;
@@ -402,33 +400,26 @@ impl SensitiveDae for JournalBearing {
         factors.system.solve_transposed(rhs);
     }
 
-    fn rate_times(&self, at: At, v: &[f64], out: &mut [f64]) {
-        self.input_times(at, &self.input_change([0.0; 2], self.pair(v, 0), &[]), out);
+    fn times(&self, at: At, rate: &[f64], dp: &[f64], out: &mut [f64]) {
+        self.input_times(at, &self.input_change([0.0; 2], self.pair(rate, 0), dp), out);
         if self.has_mass() {
             for a in 0..2 {
-                out[self.n + a] += v[self.n + a];
-                out[self.n + 2 + a] += self.setup.journal_mass_kg * v[self.n + 2 + a];
+                out[self.n + a] += rate[self.n + a];
+                out[self.n + 2 + a] += self.setup.journal_mass_kg * rate[self.n + 2 + a];
             }
         }
     }
 
-    fn rate_transposed_times(&self, at: At, v: &[f64], out: &mut [f64]) {
+    fn transposed_times(&self, at: At, v: &[f64], rate: &mut [f64], p: &mut [f64]) {
         let bar = self.input_transposed_times(at, v);
         for a in 0..2 {
-            out[self.n + a] += bar.velocity_m_s[a];
+            rate[self.n + a] += bar.velocity_m_s[a];
             if self.has_mass() {
-                out[self.n + a] += v[self.n + a];
-                out[self.n + 2 + a] += self.setup.journal_mass_kg * v[self.n + 2 + a];
+                rate[self.n + a] += v[self.n + a];
+                rate[self.n + 2 + a] += self.setup.journal_mass_kg * v[self.n + 2 + a];
             }
         }
-    }
-
-    fn parameter_times(&self, at: At, dp: &[f64], out: &mut [f64]) {
-        self.input_times(at, &self.input_change([0.0; 2], [0.0; 2], dp), out);
-    }
-
-    fn parameter_transposed_times(&self, at: At, v: &[f64], out: &mut [f64]) {
-        self.pull_parameters(&self.input_transposed_times(at, v), out);
+        self.pull_parameters(&bar, p);
     }
 
     fn output_tangent(&self, at: At, direction: Direction, dy: &mut [f64]) {

@@ -69,8 +69,21 @@ pub enum FiringError {
     #[error("{0} fires twice")]
     Twice(CylinderName),
     /// The order needs more than two turns.
-    #[error("the firing order does not fit the throw angles: it takes {0:.0} degrees instead of 720")]
-    TooLong(f64),
+    #[error(
+        "the order does not fit the throw angles within 720 degrees: after {before} the next dead centre of {cylinder} comes \
+         {wait_deg:.0} degrees later"
+    )]
+    TooLong {
+        /// Cylinder with which two turns are exceeded.
+        cylinder: CylinderName,
+        /// The one before it.
+        before: CylinderName,
+        /// Crank angle between them.
+        wait_deg: f64,
+    },
+    /// Cylinders that are not in the order.
+    #[error("every cylinder must fire once; missing: {0}")]
+    Missing(String),
 }
 
 /// One throw with the cylinders that work on it.
@@ -110,6 +123,7 @@ impl VeeEngine {
         let mut seen = BTreeSet::new();
         let mut last = 0.0;
         let mut origin = None;
+        let mut before = None;
         for &name in firing_order {
             let throw = throw_angles_rad.get(name.throw - 1);
             let throw_rad = *throw.ok_or(FiringError::NoThrow(name, throw_angles_rad.len()))?;
@@ -120,11 +134,18 @@ impl VeeEngine {
             let zero = *origin.get_or_insert(top);
             let within_turn = (top - zero - last + ANGLE_TOLERANCE_RAD).rem_euclid(TAU) - ANGLE_TOLERANCE_RAD;
             last += within_turn;
+            if last >= WORKING_CYCLE_RAD - ANGLE_TOLERANCE_RAD {
+                let wait_deg = within_turn.to_degrees();
+                return Err(FiringError::TooLong {
+                    cylinder: name,
+                    before: before.unwrap_or(name),
+                    wait_deg,
+                });
+            }
+            before = Some(name);
             throws[name.throw - 1].cylinders.push((name.bank, last));
         }
-        if last >= WORKING_CYCLE_RAD - ANGLE_TOLERANCE_RAD {
-            return Err(FiringError::TooLong(last.to_degrees()));
-        }
+        missing(&seen, throw_angles_rad.len())?;
         // Crank angles count from firing of the first cylinder: turn the throws so that it stands at its dead centre.
         let shift = origin.unwrap_or(0.0);
         throws.iter_mut().for_each(|t| t.angle_rad += shift);
@@ -178,6 +199,14 @@ impl VeeEngine {
         }
         load
     }
+}
+
+/// Every throw carries the same banks, and all their cylinders fire.
+fn missing(seen: &BTreeSet<CylinderName>, throws: usize) -> Result<(), FiringError> {
+    let banks: BTreeSet<Bank> = seen.iter().map(|n| n.bank).chain([Bank::A]).collect();
+    let all = (1..=throws).flat_map(|throw| banks.iter().map(move |&bank| CylinderName { bank, throw }));
+    let absent: Vec<String> = all.filter(|n| !seen.contains(n)).map(|n| n.to_string()).collect();
+    if absent.is_empty() { Ok(()) } else { Err(FiringError::Missing(absent.join(", "))) }
 }
 
 /// Direction of a bank in the crankcase frame.
@@ -257,7 +286,9 @@ mod tests {
             |names: &[&str]| VeeEngine::new(cylinder(), 1.0, &[0.0, 3.0], &order(names)).err().unwrap();
         assert!(matches!(build(&["A1", "A3"]), FiringError::NoThrow(..)));
         assert!(matches!(build(&["A1", "A1"]), FiringError::Twice(_)));
-        assert!(matches!(build(&["A1", "B1", "A2", "B2"]), FiringError::TooLong(_)));
+        assert!(matches!(build(&["A1", "B1", "A2", "B2"]), FiringError::TooLong { .. }));
+        assert!(matches!(build(&["A1", "A2", "B2"]), FiringError::Missing(_)));
+        assert!(matches!(build(&[]), FiringError::Missing(_)));
         assert!("C1".parse::<CylinderName>().is_err() && "A0".parse::<CylinderName>().is_err());
         assert!("".parse::<CylinderName>().is_err() && "é1".parse::<CylinderName>().is_err());
     }

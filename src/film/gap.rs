@@ -18,13 +18,13 @@ impl Gap {
     /// The gap for a journal motion; called with a change `du` it yields the change of the gap, since the gap is linear.
     pub fn of(mesh: &Mesh, u: &FilmInput) -> Self {
         let ([ex, ey], [vx, vy]) = (u.eccentricity_m, u.velocity_m_s);
-        let spread = |f: &dyn Fn(&[f64; 2]) -> f64| {
-            mesh.normals.iter().flat_map(|n| std::iter::repeat_n(f(n), mesh.n_z)).collect()
-        };
-        Self {
-            h: spread(&|n| u.clearance_m - ex * n[0] - ey * n[1]),
-            rate: spread(&|n| -vx * n[0] - vy * n[1]),
+        let mut gap = Self { h: Vec::with_capacity(mesh.cells()), rate: Vec::with_capacity(mesh.cells()) };
+        for n in &mesh.normals {
+            let (h, rate) = (u.clearance_m - ex * n[0] - ey * n[1], -vx * n[0] - vy * n[1]);
+            gap.h.resize(gap.h.len() + mesh.n_z, h);
+            gap.rate.resize(gap.rate.len() + mesh.n_z, rate);
         }
+        gap
     }
 
     /// No gap: a place to add derivatives up.
@@ -39,9 +39,9 @@ impl Gap {
             let by_h: f64 = self.h[column.clone()].iter().sum();
             let by_rate: f64 = self.rate[column].iter().sum();
             u_bar.clearance_m += by_h;
-            for a in 0..2 {
-                u_bar.eccentricity_m[a] -= by_h * n[a];
-                u_bar.velocity_m_s[a] -= by_rate * n[a];
+            for (a, n) in n.iter().enumerate() {
+                u_bar.eccentricity_m[a] -= by_h * n;
+                u_bar.velocity_m_s[a] -= by_rate * n;
             }
         }
     }

@@ -103,6 +103,16 @@ pub trait FilmModel: Send + Sync {
     /// Writes `r_q` (for a semi-smooth residual one element of its generalised Jacobian).
     fn stencil(&self, u: &FilmInput, q: &[f64], a: &mut Stencil);
 
+    /// The stencil and one column `r_u du` per change of the input, together for less than one by one.
+    fn linearise(&self, u: &FilmInput, q: &[f64], dus: &[FilmInput], a: &mut Stencil, columns: &mut [f64]) {
+        self.stencil(u, q, a);
+        if !q.is_empty() {
+            for (du, column) in dus.iter().zip(columns.chunks_exact_mut(q.len())) {
+                self.residual_tangent(u, q, du, column);
+            }
+        }
+    }
+
     /// `out += r_u du`.
     fn residual_tangent(&self, u: &FilmInput, q: &[f64], du: &FilmInput, out: &mut [f64]);
 

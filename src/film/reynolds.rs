@@ -141,7 +141,26 @@ impl Reynolds {
         passive
     }
 
-    /// Torque-free sums of the outputs: see [`FilmOutput`].
+    fn fill_stencil(&self, u: &FilmInput, gap: &Gap, passive: &[bool], a: &mut Stencil) {
+        let s = Scalars::of(&self.mesh, u);
+        a.clear();
+        self.for_faces(|face| {
+            let (k, _) = self.conductance(&face, &gap.h, &s);
+            a.diagonal[face.a] += k;
+            if let Some(other) = face.b {
+                a.diagonal[other] += k;
+                let (out, back) =
+                    if face.around { (&mut a.east, &mut a.west) } else { (&mut a.north, &mut a.south) };
+                out[face.a] = -k;
+                back[other] = -k;
+            }
+        });
+        for (k, _) in passive.iter().enumerate().filter(|(_, p)| **p) {
+            a.decouple(k, a.diagonal[k]);
+        }
+    }
+
+    /// Integrals over the bearing: see [`FilmOutput`].
     fn sums(&self, u: &FilmInput, q: &[f64], gap: &Gap) -> FilmOutput {
         let s = Scalars::of(&self.mesh, u);
         let area = s.dx * s.dz;
@@ -208,26 +227,14 @@ impl FilmModel for Reynolds {
 
     fn stencil(&self, u: &FilmInput, q: &[f64], a: &mut Stencil) {
         let gap = Gap::of(&self.mesh, u);
-        let s = Scalars::of(&self.mesh, u);
-        let b = self.mesh.n_z;
-        a.clear();
-        self.for_faces(|face| {
-            let (k, _) = self.conductance(&face, &gap.h, &s);
-            a.diagonal[face.a] += k;
-            if let Some(other) = face.b {
-                a.diagonal[other] += k;
-                let (out, back) =
-                    if face.around { (&mut a.east, &mut a.west) } else { (&mut a.north, &mut a.south) };
-                out[face.a] = -k;
-                back[other] = -k;
-            }
-        });
-        debug_assert_eq!(a.diagonal.len(), self.mesh.n_phi * b);
-        for (k, passive) in self.is_passive(u, q, &gap).into_iter().enumerate() {
-            if passive {
-                a.decouple(k, a.diagonal[k]);
-            }
-        }
+        self.fill_stencil(u, &gap, &self.is_passive(u, q, &gap), a);
+    }
+
+    fn linearise(&self, u: &FilmInput, q: &[f64], dus: &[FilmInput], a: &mut Stencil, columns: &mut [f64]) {
+        let gap = Gap::of(&self.mesh, u);
+        let passive = self.is_passive(u, q, &gap);
+        self.fill_stencil(u, &gap, &passive, a);
+        derivatives::residual_tangents(self, u, q, &gap, &passive, dus, columns);
     }
 
     fn residual_tangent(&self, u: &FilmInput, q: &[f64], du: &FilmInput, out: &mut [f64]) {

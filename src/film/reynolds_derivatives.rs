@@ -80,25 +80,48 @@ fn drop(film: &Reynolds, face: &Face, q: &[f64]) -> f64 {
 }
 
 pub(super) fn residual_tangent(film: &Reynolds, u: &FilmInput, q: &[f64], du: &FilmInput, out: &mut [f64]) {
-    let at = Point::at(film, u);
-    let d = Point::change(film, u, du);
-    let s = &at.s;
-    let passive = film.is_passive(u, q, &at.gap);
+    let gap = Gap::of(&film.mesh, u);
+    let passive = film.is_passive(u, q, &gap);
+    residual_tangents(film, u, q, &gap, &passive, std::slice::from_ref(du), out);
+}
+
+/// One column per change; what the columns share is computed once.
+pub(super) fn residual_tangents(
+    film: &Reynolds,
+    u: &FilmInput,
+    q: &[f64],
+    gap: &Gap,
+    passive: &[bool],
+    dus: &[FilmInput],
+    columns: &mut [f64],
+) {
+    let n = q.len();
+    let s = &Scalars::of(&film.mesh, u);
+    let changes: Vec<Point> = dus.iter().map(|du| Point::change(film, u, du)).collect();
     film.for_faces(|face| {
-        let (k, h) = film.conductance(&face, &at.gap.h, s);
-        let mut flow = k * drop(film, &face, q) * conductance_change(&face, h, s, &d);
-        if face.around {
-            flow += (d.s.speed * h * s.dz + s.speed * (face_gap(&face, &d.gap.h) * s.dz + h * d.s.dz)) / 2.0;
+        if passive[face.a] && face.b.is_none_or(|b| passive[b]) {
+            return;
         }
-        if !passive[face.a] {
-            out[face.a] += flow;
-        }
-        if let Some(b) = face.b.filter(|&b| !passive[b]) {
-            out[b] -= flow;
+        let (k, h) = film.conductance(&face, &gap.h, s);
+        let pressure_flow = k * drop(film, &face, q);
+        for (d, out) in changes.iter().zip(columns.chunks_exact_mut(n)) {
+            let mut flow = pressure_flow * conductance_change(&face, h, s, d);
+            if face.around {
+                flow +=
+                    (d.s.speed * h * s.dz + s.speed * (face_gap(&face, &d.gap.h) * s.dz + h * d.s.dz)) / 2.0;
+            }
+            if !passive[face.a] {
+                out[face.a] += flow;
+            }
+            if let Some(b) = face.b.filter(|&b| !passive[b]) {
+                out[b] -= flow;
+            }
         }
     });
-    for (k, out) in out.iter_mut().enumerate().filter(|(k, _)| !passive[*k]) {
-        *out += d.gap.rate[k] * s.dx * s.dz + at.gap.rate[k] * (d.s.dx * s.dz + s.dx * d.s.dz);
+    for (d, out) in changes.iter().zip(columns.chunks_exact_mut(n)) {
+        for (k, out) in out.iter_mut().enumerate().filter(|(k, _)| !passive[*k]) {
+            *out += d.gap.rate[k] * s.dx * s.dz + gap.rate[k] * (d.s.dx * s.dz + s.dx * d.s.dz);
+        }
     }
 }
 

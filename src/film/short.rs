@@ -22,6 +22,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const NODES: usize = 32;
 /// Angles at which the pressure of the mid-plane is looked at.
 const ANGLES: usize = 360;
+/// Share of the peak below which a pressure has no weight in the smooth maximum (sharpness 10 and more).
+const NEAR_PEAK: f64 = 0.02;
 /// Number of scalars in a [`FilmInput`].
 const INPUTS: usize = 9;
 
@@ -32,6 +34,7 @@ pub struct ShortFilm {
     pub sharpness: f64,
     /// Nodes on [-1, 1] and weights.
     rule: Vec<(f64, f64)>,
+    normals: Vec<[f64; 2]>,
 }
 
 /// Integrals over the loaded half of the film.
@@ -82,7 +85,11 @@ fn times(m: &[[f64; 2]; 2], x: [f64; 2]) -> [f64; 2] {
 impl ShortFilm {
     /// A short film; `sharpness` as in [`super::Reynolds`].
     pub fn new(sharpness: f64) -> Self {
-        Self { sharpness, rule: gauss_legendre(NODES) }
+        let direction = |i: usize| {
+            let (s, c) = (TAU * i as f64 / ANGLES as f64).sin_cos();
+            [c, s]
+        };
+        Self { sharpness, rule: gauss_legendre(NODES), normals: (0..ANGLES).map(direction).collect() }
     }
 
     fn integrals(&self, u: &FilmInput, v: [f64; 2]) -> Integrals {
@@ -114,63 +121,107 @@ impl ShortFilm {
         }
         sum
     }
+}
 
-    /// Outputs and their derivatives by the nine inputs, in the order of [`input_array`].
-    fn evaluate(&self, u: &FilmInput) -> (FilmOutput, [[f64; 7]; INPUTS]) {
-        let impedance = Impedance::at(self, u);
-        let (v, force) = (impedance.v, impedance.force);
-        let (length, radius) = (u.width_m, u.diameter_m / 2.0);
-        let mut y = FilmOutput { force_n: force, gap_min_m: Gap::minimum_m(u), ..Default::default() };
-        let [ex, ey] = u.eccentricity_m;
-        let e2 = (ex * ex + ey * ey) / (u.clearance_m * u.clearance_m);
-        let couette = u.viscosity_pa_s * (u.speed_rad_s * radius).powi(2) * radius * length * TAU
-            / (u.clearance_m * (1.0 - e2).sqrt());
-        let arm = ex * force[1] - ey * force[0];
-        y.loss_w = couette + u.speed_rad_s / 2.0 * arm;
-        y.dissipation_w = y.loss_w - force[0] * u.velocity_m_s[0] - force[1] * u.velocity_m_s[1];
-        let speed = v[0].hypot(v[1]);
-        y.side_flow_m3_s = 2.0 * length * radius * speed;
-        let peak = PowerMean::maximum(self.sharpness).of((0..ANGLES).map(|i| mid_plane(u, v, i)));
-        y.pressure_peak_pa = peak.value();
+/// The film at one input: what outputs and their derivatives share.
+struct State<'a> {
+    film: &'a ShortFilm,
+    u: &'a FilmInput,
+    impedance: Impedance,
+    /// Couette part of the loss.
+    couette_w: f64,
+    /// `e x force`.
+    arm: f64,
+    /// Size of the film velocity.
+    speed: f64,
+    peak: PowerMean,
+}
 
-        let slope = Gap::minimum_slope(u);
-        let jacobian = std::array::from_fn(|k| {
-            let du = unit_input(k);
-            let (de, dc, d_omega) = (du.eccentricity_m, du.clearance_m, du.speed_rad_s);
-            let dv = film_velocity_change(u, &du);
-            let df = impedance.force_change(u, &du);
-            let d_ln_root =
-                -((ex * de[0] + ey * de[1]) / u.clearance_m.powi(2) - e2 * dc / u.clearance_m) / (1.0 - e2);
-            let d_couette = couette
-                * (du.viscosity_pa_s / u.viscosity_pa_s
-                    + 3.0 * du.diameter_m / u.diameter_m
-                    + du.width_m / length
-                    - dc / u.clearance_m
-                    - d_ln_root)
-                + if u.speed_rad_s != 0.0 { couette * 2.0 * d_omega / u.speed_rad_s } else { 0.0 };
-            let d_arm = de[0] * force[1] + ex * df[1] - de[1] * force[0] - ey * df[0];
-            let d_loss = d_couette + (d_omega * arm + u.speed_rad_s * d_arm) / 2.0;
-            let d_squeeze: f64 =
-                (0..2).map(|a| df[a] * u.velocity_m_s[a] + force[a] * du.velocity_m_s[a]).sum();
-            let d_speed = if speed > 0.0 { (v[0] * dv[0] + v[1] * dv[1]) / speed } else { 0.0 };
-            let d_peak: f64 = (0..ANGLES)
-                .map(|i| (i, peak.derivative(mid_plane(u, v, i))))
-                .filter(|(_, w)| *w != 0.0)
-                .map(|(i, w)| w * mid_plane_change(u, v, &du, dv, i))
-                .sum();
-            [
-                df[0],
-                df[1],
-                d_loss,
-                d_loss - d_squeeze,
-                dc + slope[0] * de[0] + slope[1] * de[1],
-                d_peak,
-                2.0 * (length * radius * d_speed
-                    + (du.width_m * radius + length * du.diameter_m / 2.0) * speed),
-            ]
-        });
-        (y, jacobian)
+impl<'a> State<'a> {
+    fn at(film: &'a ShortFilm, u: &'a FilmInput) -> Self {
+        let impedance = Impedance::at(film, u);
+        let ([ex, ey], force, v) = (u.eccentricity_m, impedance.force, impedance.v);
+        let radius = u.diameter_m / 2.0;
+        let couette_w = u.viscosity_pa_s * (u.speed_rad_s * radius).powi(2) * radius * u.width_m * TAU
+            / (u.clearance_m * (1.0 - ratio_squared(u)).sqrt());
+        let pressures = film.normals.iter().map(|n| mid_plane(u, v, n));
+        let peak = PowerMean::maximum(film.sharpness).of(pressures);
+        Self {
+            film,
+            u,
+            couette_w,
+            arm: ex * force[1] - ey * force[0],
+            speed: v[0].hypot(v[1]),
+            impedance,
+            peak,
+        }
     }
+
+    fn output(&self) -> FilmOutput {
+        let (u, force) = (self.u, self.impedance.force);
+        let loss_w = self.couette_w + u.speed_rad_s / 2.0 * self.arm;
+        FilmOutput {
+            force_n: force,
+            loss_w,
+            dissipation_w: loss_w - force[0] * u.velocity_m_s[0] - force[1] * u.velocity_m_s[1],
+            gap_min_m: Gap::minimum_m(u),
+            pressure_peak_pa: self.peak.value(),
+            side_flow_m3_s: u.width_m * u.diameter_m * self.speed,
+        }
+    }
+
+    /// Change of the outputs for a change of the input.
+    fn change(&self, du: &FilmInput) -> FilmOutput {
+        let (u, force, v) = (self.u, self.impedance.force, self.impedance.v);
+        let ([ex, ey], de, dc) = (u.eccentricity_m, du.eccentricity_m, du.clearance_m);
+        let dv = film_velocity_change(u, du);
+        let df = self.impedance.force_change(u, du);
+        let e2 = ratio_squared(u);
+        let d_ln_root =
+            -((ex * de[0] + ey * de[1]) / u.clearance_m.powi(2) - e2 * dc / u.clearance_m) / (1.0 - e2);
+        let mut relative = du.viscosity_pa_s / u.viscosity_pa_s
+            + 3.0 * du.diameter_m / u.diameter_m
+            + du.width_m / u.width_m
+            - dc / u.clearance_m
+            - d_ln_root;
+        if u.speed_rad_s != 0.0 {
+            relative += 2.0 * du.speed_rad_s / u.speed_rad_s;
+        }
+        let d_arm = de[0] * force[1] + ex * df[1] - de[1] * force[0] - ey * df[0];
+        let loss_w = self.couette_w * relative + (du.speed_rad_s * self.arm + u.speed_rad_s * d_arm) / 2.0;
+        let squeeze_w: f64 = (0..2).map(|a| df[a] * u.velocity_m_s[a] + force[a] * du.velocity_m_s[a]).sum();
+        let d_speed = if self.speed > 0.0 { (v[0] * dv[0] + v[1] * dv[1]) / self.speed } else { 0.0 };
+        let slope = Gap::minimum_slope(u);
+        FilmOutput {
+            force_n: df,
+            loss_w,
+            dissipation_w: loss_w - squeeze_w,
+            gap_min_m: dc + slope[0] * de[0] + slope[1] * de[1],
+            pressure_peak_pa: self.peak_change(du, dv),
+            side_flow_m3_s: u.width_m * u.diameter_m * d_speed
+                + (du.width_m * u.diameter_m + u.width_m * du.diameter_m) * self.speed,
+        }
+    }
+
+    fn peak_change(&self, du: &FilmInput, dv: [f64; 2]) -> f64 {
+        let (u, v) = (self.u, self.impedance.v);
+        let share = |n: &[f64; 2]| {
+            let p = mid_plane(u, v, n);
+            // Far below the peak the weight is below rounding.
+            if p > NEAR_PEAK * self.peak.exact() {
+                self.peak.derivative(p) * mid_plane_change(u, v, du, dv, n)
+            } else {
+                0.0
+            }
+        };
+        self.film.normals.iter().map(share).sum()
+    }
+}
+
+/// Square of the eccentricity ratio.
+fn ratio_squared(u: &FilmInput) -> f64 {
+    let [ex, ey] = u.eccentricity_m;
+    (ex * ex + ey * ey) / (u.clearance_m * u.clearance_m)
 }
 
 /// `V = v + omega/2 (e_y, -e_x)`.
@@ -186,36 +237,24 @@ fn film_velocity_change(u: &FilmInput, du: &FilmInput) -> [f64; 2] {
     [moved[0] + half * ey, moved[1] - half * ex]
 }
 
-fn normal(i: usize) -> [f64; 2] {
-    let (s, c) = (TAU * i as f64 / ANGLES as f64).sin_cos();
-    [c, s]
-}
-
-/// Pressure of the mid-plane at angle number `i`.
-fn mid_plane(u: &FilmInput, v: [f64; 2], i: usize) -> f64 {
-    let n = normal(i);
+/// Pressure of the mid-plane in the direction `n`.
+fn mid_plane(u: &FilmInput, v: [f64; 2], n: &[f64; 2]) -> f64 {
     let h = u.clearance_m - u.eccentricity_m[0] * n[0] - u.eccentricity_m[1] * n[1];
     1.5 * u.viscosity_pa_s * u.width_m.powi(2) * (v[0] * n[0] + v[1] * n[1]).max(0.0) / h.powi(3)
 }
 
-fn mid_plane_change(u: &FilmInput, v: [f64; 2], du: &FilmInput, dv: [f64; 2], i: usize) -> f64 {
-    let n = normal(i);
+fn mid_plane_change(u: &FilmInput, v: [f64; 2], du: &FilmInput, dv: [f64; 2], n: &[f64; 2]) -> f64 {
     let h = u.clearance_m - u.eccentricity_m[0] * n[0] - u.eccentricity_m[1] * n[1];
     let dh = du.clearance_m - du.eccentricity_m[0] * n[0] - du.eccentricity_m[1] * n[1];
     let (flow, d_flow) = (v[0] * n[0] + v[1] * n[1], dv[0] * n[0] + dv[1] * n[1]);
     if flow <= 0.0 {
         return 0.0;
     }
-    mid_plane(u, v, i)
+    mid_plane(u, v, n)
         * (du.viscosity_pa_s / u.viscosity_pa_s + 2.0 * du.width_m / u.width_m + d_flow / flow - 3.0 * dh / h)
 }
 
-/// The input as numbers in a fixed order.
-fn input_array(u: &FilmInput) -> [f64; INPUTS] {
-    let ([ex, ey], [vx, vy]) = (u.eccentricity_m, u.velocity_m_s);
-    [ex, ey, vx, vy, u.speed_rad_s, u.width_m, u.diameter_m, u.clearance_m, u.viscosity_pa_s]
-}
-
+/// The input from numbers in a fixed order.
 fn input_from(a: &[f64; INPUTS]) -> FilmInput {
     let [ex, ey, vx, vy, speed_rad_s, width_m, diameter_m, clearance_m, viscosity_pa_s] = *a;
     FilmInput {
@@ -295,28 +334,24 @@ impl FilmModel for ShortFilm {
     }
 
     fn output(&self, u: &FilmInput, _: &[f64]) -> FilmOutput {
-        self.evaluate(u).0
+        State::at(self, u).output()
     }
 
     fn output_tangent(&self, u: &FilmInput, _: &[f64], _: &[f64], du: &FilmInput) -> FilmOutput {
-        let (_, jacobian) = self.evaluate(u);
-        let mut y = [0.0; 7];
-        for (column, d) in jacobian.iter().zip(input_array(du)) {
-            y.iter_mut().zip(column).for_each(|(y, j)| *y += j * d);
-        }
-        let [fx, fy, loss_w, dissipation_w, gap_min_m, pressure_peak_pa, side_flow_m3_s] = y;
-        FilmOutput { force_n: [fx, fy], loss_w, dissipation_w, gap_min_m, pressure_peak_pa, side_flow_m3_s }
+        State::at(self, u).change(du)
     }
 
     fn output_cotangent(&self, u: &FilmInput, _: &[f64], w: &FilmOutput, _: &mut [f64]) -> FilmInput {
-        let (_, jacobian) = self.evaluate(u);
-        let w = output_array(w);
-        input_from(&jacobian.map(|column| column.iter().zip(w).map(|(j, w)| j * w).sum()))
+        let (state, w) = (State::at(self, u), output_array(w));
+        input_from(&std::array::from_fn(|k| {
+            let change = output_array(&state.change(&unit_input(k)));
+            change.iter().zip(w).map(|(j, w)| j * w).sum()
+        }))
     }
 
     fn pressure_max_pa(&self, u: &FilmInput, _: &[f64]) -> f64 {
         let v = film_velocity(u);
-        (0..ANGLES).map(|i| mid_plane(u, v, i)).fold(0.0, f64::max)
+        self.normals.iter().map(|n| mid_plane(u, v, n)).fold(0.0, f64::max)
     }
 
     fn weakly_active(&self, _: &FilmInput, _: &[f64]) -> usize {
@@ -327,8 +362,9 @@ impl FilmModel for ShortFilm {
         const ACROSS: usize = 16;
         let v = film_velocity(u);
         let share = |j: usize| 2.0 * (j as f64 + 0.5) / ACROSS as f64 - 1.0;
-        (0..ANGLES)
-            .map(|i| (0..ACROSS).map(|j| mid_plane(u, v, i) * (1.0 - share(j).powi(2))).collect())
+        self.normals
+            .iter()
+            .map(|n| (0..ACROSS).map(|j| mid_plane(u, v, n) * (1.0 - share(j).powi(2))).collect())
             .collect()
     }
 }

@@ -143,9 +143,8 @@ impl<'a, M: SensitiveDae> Sweep<'a, M> {
         for r in 0..self.of.len() {
             let column = r * size..(r + 1) * size;
             let lambda = &self.lambda[column.clone()];
-            self.model.parameter_transposed_times(at, lambda, &mut self.rows[r]);
             let memory = &mut self.memory[0][column.clone()];
-            self.model.rate_transposed_times(at, lambda, memory);
+            self.model.transposed_times(at, lambda, memory, &mut self.rows[r]);
             let now = memory.iter().fold(0.0f64, |a, c| a.max(c.abs()));
             self.scale[r] = self.scale[r].max(now);
             if self.scale[r] > 0.0 {

@@ -5,6 +5,11 @@ use crate::dae::SensitiveDae;
 use crate::orbit::{Orbit, OrbitOptions, Quantity, settle};
 use crate::run::{Cancel, Cost};
 
+/// Share of the perturbation that may be left unsettled.
+const REST: f64 = 1e-7;
+/// Smallest periodicity that rounding lets a cycle reach.
+const FINEST: f64 = 1e-13;
+
 /// Which points a difference uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Difference {
@@ -49,6 +54,9 @@ impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
             closure: 0.0,
             cost: Cost::default(),
         };
+        // What is left of the start must be small against the difference itself, not only against the cycle.
+        let tolerance = (REST * self.perturbation).max(FINEST).min(options.periodicity_tolerance);
+        let options = &OrbitOptions { periodicity_tolerance: tolerance, ..*options };
         let here: Vec<f64> = of.iter().map(|q| at.value(q)).collect();
         for j in 0..p.len() {
             let step = self.perturbation * if p[j] != 0.0 { p[j].abs() } else { 1.0 };

@@ -97,19 +97,16 @@ impl<'a, M: SensitiveDae> Sweep<'a, M> {
         self.s.rotate_right(1);
         let [new, last, before] = &mut self.s;
         new.fill(0.0);
-        let mut history = vec![0.0; size];
+        let (mut history, mut direction) = (vec![0.0; size], vec![0.0; np]);
         for j in 0..np {
             let column = j * size..(j + 1) * size;
             for &i in model.memory() {
                 history[i] = a[1] * last[j * size + i] + a[2] * before[j * size + i];
             }
             let rhs = &mut new[column];
-            model.rate_times(at, &history, rhs);
-            if forced {
-                let mut unit = vec![0.0; np];
-                unit[j] = 1.0;
-                model.parameter_times(at, &unit, rhs);
-            }
+            direction.fill(0.0);
+            direction[j] = if forced { 1.0 } else { 0.0 };
+            model.times(at, &history, &direction, rhs);
             rhs.iter_mut().for_each(|v| *v = -*v);
         }
         model.solve(&self.factors, new);

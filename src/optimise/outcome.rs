@@ -44,9 +44,13 @@ impl Outcome {
                  the box or relax the worst one."
             }
             Self::StartFailed => {
-                "The start design cannot be simulated. Start with more clearance, a larger bearing or more steps per cycle."
+                "The start design cannot be simulated; the reason is given. If the orbit did not become periodic: more \
+                 orbit.max_cycles or a looser orbit.periodicity_tolerance (a film that holds tension often has no stable \
+                 orbit). If a step did not converge: more orbit.steps_per_cycle, a larger bearing or less load."
             }
-            Self::Cancelled => "Stopped on request; the best design found so far is reported.",
+            Self::Cancelled => {
+                "Stopped on request; the best design found until then is reported, if there was one."
+            }
         }
     }
 }

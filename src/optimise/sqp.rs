@@ -22,6 +22,13 @@ const ARMIJO: f64 = 1e-4;
 const SHORTEST: f64 = 1e-7;
 /// Rounding of the merit function that a search must not stumble over.
 const ROUNDING: f64 = 1e-12;
+/// Largest change of a scaled variable that counts as standing still, and how often in a row ends the search.
+const STILL: f64 = 1e-9;
+const STALLED: u32 = 3;
+/// Smallest violation that matters when points are compared.
+const FEASIBLE: f64 = 1e-7;
+/// KKT residual and violation at which a search that cannot go on counts as almost converged.
+const CLOSE: f64 = 1e-5;
 /// Powell's damping.
 const DAMPING: f64 = 0.2;
 
@@ -51,9 +58,9 @@ pub struct Minimum {
     pub x: Vec<f64>,
     /// Values there; `None` if the start could not be evaluated.
     pub values: Option<Values>,
-    /// Multipliers at the last iterate: objective units per unit of constraint (bounds: per unit of variable in its box).
+    /// Multipliers there: objective units per unit of constraint (bounds: per unit of variable in its box).
     pub multipliers: Multipliers,
-    /// KKT residual at the last iterate.
+    /// KKT residual there; infinite if its sub-problem was not solved.
     pub kkt: f64,
     /// Accepted points.
     pub history: Vec<IterationEvent>,
@@ -103,9 +110,9 @@ pub fn minimise<P: ConstrainedProblem + ?Sized>(
         .run()?;
     let state = result.state;
     let operator = result.problem.problem.ok_or_else(|| Error::msg("argmin lost the problem"))?;
-    let (x, values) = match state.incumbent {
-        Some((x, values)) => (x, Some(values)),
-        None => (s, None),
+    let (x, values, kkt, multipliers) = match state.incumbent {
+        Some(best) => (best.x, Some(best.values), best.kkt, best.multipliers),
+        None => (s, None, f64::INFINITY, Multipliers::default()),
     };
     let count = |name: &str| result.problem.counts.get(name).copied().unwrap_or(0);
     let restore = |v: Vec<f64>| v.into_iter().map(|m| m * scale).collect();
@@ -114,12 +121,12 @@ pub fn minimise<P: ConstrainedProblem + ?Sized>(
         x: operator.scaled.to_true(&x),
         values: values.map(|v| Values { objective: v.objective * scale, ..v }),
         multipliers: Multipliers {
-            inequalities: restore(state.multipliers.inequalities),
-            equalities: restore(state.multipliers.equalities),
-            lower: restore(state.multipliers.lower),
-            upper: restore(state.multipliers.upper),
+            inequalities: restore(multipliers.inequalities),
+            equalities: restore(multipliers.equalities),
+            lower: restore(multipliers.lower),
+            upper: restore(multipliers.upper),
         },
-        kkt: state.kkt,
+        kkt,
         history: state.history,
         failures: state.failures,
         evaluations: count("evaluations"),
@@ -150,7 +157,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
             Ok(slopes) => state.iterate = Some(Iterate { x, values, slopes }),
             Err(e) => return Ok((refuse(state, e, Outcome::StartFailed), None)),
         }
-        state.remember(self.options.tolerance);
+        state.remember(self.options.tolerance.max(FEASIBLE));
         Ok((state, None))
     }
 
@@ -166,8 +173,13 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
         state.kkt = kkt(&now, &state.hessian, &qp);
         state.multipliers = qp.multipliers.clone();
         report(problem, &mut state, &now);
-        if state.kkt <= self.options.tolerance {
+        let converged = state.kkt <= self.options.tolerance;
+        state.judge(converged);
+        if converged {
             return Ok((state.end(Outcome::Converged), None));
+        }
+        if state.stalled >= STALLED {
+            return Ok((self.give_up(state), None));
         }
         let size = qp.step.iter().fold(0.0f64, |a, d| a.max(d.abs()));
         if qp.elastic && size < 1e-8 && now.values.violation() > self.options.tolerance {
@@ -195,8 +207,9 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
                     let next = Iterate { x, values, slopes };
                     update_hessian(&mut state, &now, &next);
                     state.last_step = next.x.iter().zip(&now.x).fold(0.0, |a, (b, c)| a.max((b - c).abs()));
+                    state.stalled = if state.last_step < STILL { state.stalled + 1 } else { 0 };
                     state.iterate = Some(next);
-                    state.remember(self.options.tolerance);
+                    state.remember(self.options.tolerance.max(FEASIBLE));
                     Ok((state, None))
                 }
             },
@@ -256,10 +269,11 @@ impl Sqp {
                 }
                 Ok(values) if enough(&values, share) => return Ok((x, values)),
                 Ok(values) => {
-                    if share == 1.0 && values.total_violation() > now.values.total_violation() {
-                        if let Some(found) = self.corrected(problem, state, now, qp, &values, &enough)? {
-                            return Ok(found);
-                        }
+                    let curved = share == 1.0 && values.total_violation() > now.values.total_violation();
+                    if curved
+                        && let Some(found) = self.corrected(problem, state, now, qp, &values, &enough)?
+                    {
+                        return Ok(found);
                     }
                     // Minimum of the parabola through both merits and the slope.
                     let rise = merit(&values) - here - share * slope;
@@ -300,8 +314,11 @@ impl Sqp {
 
     /// Names the end of a run that cannot go on.
     fn give_up(&self, state: SqpState) -> SqpState {
-        let violation = state.iterate.as_ref().map_or(f64::INFINITY, |i| i.values.violation());
-        let close = state.kkt <= 1e3 * self.options.tolerance && violation <= 10.0 * self.options.tolerance;
+        let (kkt, violation) = state
+            .incumbent
+            .as_ref()
+            .map_or((f64::INFINITY, f64::INFINITY), |b| (b.kkt, b.values.violation()));
+        let close = kkt <= CLOSE.max(1e3 * self.options.tolerance) && violation <= CLOSE;
         state.end(if close { Outcome::AlmostConverged } else { Outcome::NoProgress })
     }
 }

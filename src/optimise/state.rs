@@ -28,18 +28,29 @@ pub(super) struct Iterate {
     pub slopes: Slopes,
 }
 
+/// The best point so far.
+#[derive(Debug, Clone)]
+pub(super) struct Incumbent {
+    pub x: Vec<f64>,
+    pub values: Values,
+    /// Known once the sub-problem there is solved.
+    pub kkt: f64,
+    pub multipliers: Multipliers,
+}
+
 /// State of an SQP run; scaled variables inside. argmin's own notion of "best" looks at the cost alone, so the incumbent is
 /// kept here: feasible points first, then lower objective.
 #[derive(Debug, Clone)]
 pub struct SqpState {
     pub(super) iterate: Option<Iterate>,
-    pub(super) incumbent: Option<(Vec<f64>, Values)>,
+    pub(super) incumbent: Option<Incumbent>,
     pub(super) hessian: DMatrix<f64>,
     pub(super) fresh_hessian: bool,
     pub(super) multipliers: Multipliers,
     pub(super) penalty: f64,
     pub(super) kkt: f64,
     pub(super) last_step: f64,
+    pub(super) stalled: u32,
     pub(super) failures: Vec<String>,
     pub(super) history: Vec<IterationEvent>,
     pub(super) outcome: Option<Outcome>,
@@ -85,9 +96,22 @@ impl SqpState {
     pub(super) fn remember(&mut self, feasible: f64) {
         let Some(now) = &self.iterate else { return };
         let rank = |v: &Values| (v.violation().max(feasible), v.objective);
-        let better = self.incumbent.as_ref().is_none_or(|(_, best)| rank(&now.values) < rank(best));
+        let better = self.incumbent.as_ref().is_none_or(|best| rank(&now.values) < rank(&best.values));
         if better {
-            self.incumbent = Some((now.x.clone(), now.values.clone()));
+            let (x, values) = (now.x.clone(), now.values.clone());
+            self.incumbent =
+                Some(Incumbent { x, values, kkt: f64::INFINITY, multipliers: Multipliers::default() });
+        }
+    }
+
+    /// Notes the optimality found at the iterate; a converged iterate becomes the incumbent whatever came before.
+    pub(super) fn judge(&mut self, converged: bool) {
+        let Some(now) = &self.iterate else { return };
+        let same = self.incumbent.as_ref().is_some_and(|best| best.x == now.x);
+        if same || converged {
+            let (x, values) = (now.x.clone(), now.values.clone());
+            self.incumbent =
+                Some(Incumbent { x, values, kkt: self.kkt, multipliers: self.multipliers.clone() });
         }
     }
 }
@@ -106,6 +130,7 @@ impl State for SqpState {
             penalty: 0.0,
             kkt: f64::INFINITY,
             last_step: 0.0,
+            stalled: 0,
             failures: Vec::new(),
             history: Vec::new(),
             outcome: None,
@@ -125,7 +150,7 @@ impl State for SqpState {
     }
 
     fn get_best_param(&self) -> Option<&Vec<f64>> {
-        self.incumbent.as_ref().map(|(x, _)| x)
+        self.incumbent.as_ref().map(|best| &best.x)
     }
 
     fn get_max_iters(&self) -> u64 {
@@ -145,7 +170,7 @@ impl State for SqpState {
     }
 
     fn get_best_cost(&self) -> f64 {
-        self.incumbent.as_ref().map_or(f64::INFINITY, |(_, v)| v.objective)
+        self.incumbent.as_ref().map_or(f64::INFINITY, |best| best.values.objective)
     }
 
     fn get_target_cost(&self) -> f64 {
@@ -174,7 +199,7 @@ impl State for SqpState {
     }
 
     fn is_best(&self) -> bool {
-        self.incumbent.as_ref().zip(self.iterate.as_ref()).is_some_and(|((x, _), i)| *x == i.x)
+        self.incumbent.as_ref().zip(self.iterate.as_ref()).is_some_and(|(best, i)| best.x == i.x)
     }
 
     fn terminate_with(mut self, reason: TerminationReason) -> Self {

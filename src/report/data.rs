@@ -30,6 +30,8 @@ pub struct Report {
     pub constraints: Vec<ConstraintReport>,
     /// Optimality.
     pub kkt: KktReport,
+    /// Cylinder pressure at the first operating point; none if no bearing takes its load from the machine.
+    pub cylinder_pressure: Option<PressureReport>,
     /// Gradient at the design, with its proof.
     pub gradient: Option<GradientReport>,
     /// Working cycle at the design, one entry per bearing and operating point.
@@ -154,8 +156,8 @@ pub struct ConstraintReport {
     pub active: bool,
     /// Whether the limit is kept, within the tolerance of the optimiser.
     pub met: bool,
-    /// Loss in watts that one unit of relaxation would save.
-    pub price_w_per_unit: f64,
+    /// Loss in watts that one unit of relaxation would save; none where no optimum was reached.
+    pub price_w_per_unit: Option<f64>,
 }
 
 /// Optimality of the design.
@@ -208,6 +210,15 @@ pub struct Extremum {
     pub value: f64,
     /// Crank angle after firing top dead centre, degrees.
     pub crank_angle_deg: f64,
+}
+
+/// Cylinder pressure over the cycle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PressureReport {
+    /// Indicated mean effective pressure, MPa.
+    pub imep_mpa: f64,
+    /// Largest pressure, absolute.
+    pub peak_mpa: Extremum,
 }
 
 /// Working cycle of one bearing at one operating point.
@@ -323,4 +334,6 @@ pub struct Findings {
     pub report: Report,
     /// Cycles at the design found.
     pub curves: Vec<Curves>,
+    /// Cylinder pressure at the first operating point, (degrees, MPa); empty without a machine.
+    pub cylinder: Vec<(f64, f64)>,
 }

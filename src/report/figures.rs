@@ -9,8 +9,10 @@ use std::sync::Arc;
 /// Columns of the pressure map at most; more would only make the page heavy.
 const MAP_COLUMNS: usize = 120;
 
-fn line(x: &[f64], y: &[f64], colour: &str, legend: &str) -> LinePlot {
-    let points = x.iter().copied().zip(y.iter().copied()).filter(|p| p.1.is_finite());
+/// A closed cycle: the first value stands again at its end.
+fn line(x: &[f64], y: &[f64], cycle: f64, colour: &str, legend: &str) -> LinePlot {
+    let end = y.first().map(|y| (cycle, *y));
+    let points = x.iter().copied().zip(y.iter().copied()).chain(end).filter(|p| p.1.is_finite());
     LinePlot::new().with_data(points).with_color(colour).with_stroke_width(1.8).with_legend(legend)
 }
 
@@ -29,16 +31,17 @@ fn over_angle(
 ) -> String {
     let mut plots: Vec<Plot> = Vec::new();
     for (y, colour, legend) in series.iter().filter(|s| s.0.len() == c.crank_angle_deg.len()) {
-        plots.push(line(&c.crank_angle_deg, y, colour, legend).into());
+        plots.push(line(&c.crank_angle_deg, y, cycle_deg(c), colour, legend).into());
     }
     let everything = series.iter().flat_map(|s| s.0.iter().copied()).chain(limit);
-    let (top, step) = axis(everything);
+    // Room for the legend above the curves.
+    let (top, step) = axis(everything.map(|v| 1.15 * v));
     let mut layout = over_cycle(styled(Layout::auto_from_plots(&plots)), cycle_deg(c))
         .with_y_label(label)
         .with_y_axis_min(0.0)
         .with_y_axis_max(top)
         .with_y_tick_step(step)
-        .with_legend_position(LegendPosition::InsideTopRight);
+        .with_legend_position(LegendPosition::InsideTopCenter);
     if let Some(limit) = limit {
         let reference = ReferenceLine::horizontal(limit).with_color(LIMIT).with_stroke_width(1.2);
         layout = layout.with_reference_line(reference.with_label("limit"));
@@ -50,7 +53,7 @@ fn over_angle(
 pub fn film(c: &Curves, limit: Option<f64>, name: &str) -> String {
     let series =
         [(&c.start_film_min_um[..], START, "start"), (&c.film_min_um, FOUND, "design"), (&[], "", "")];
-    over_angle(c, series, limit, "smallest film thickness [um]", name)
+    over_angle(c, series, limit, "smallest film thickness [µm]", name)
 }
 
 /// Largest film pressure over the cycle.
@@ -61,6 +64,21 @@ pub fn pressure(c: &Curves, limit: Option<f64>, name: &str) -> String {
         (&[], "", ""),
     ];
     over_angle(c, series, limit, "largest film pressure [MPa]", name)
+}
+
+/// Cylinder pressure over the cycle, (degrees, MPa).
+pub fn cylinder(curve: &[(f64, f64)], name: &str) -> String {
+    let plots: Vec<Plot> = vec![
+        LinePlot::new().with_data(curve.iter().copied()).with_color(LIMIT).with_stroke_width(1.8).into(),
+    ];
+    let (top, step) = axis(curve.iter().map(|p| p.1));
+    let layout = over_cycle(styled(Layout::auto_from_plots(&plots)), curve.last().map_or(720.0, |p| p.0))
+        .with_y_label("cylinder pressure [MPa]")
+        .with_y_axis_min(0.0)
+        .with_y_axis_max(top)
+        .with_y_tick_step(step)
+        .with_height(220.0);
+    render(plots, layout, name)
 }
 
 /// Friction loss over the cycle.
@@ -97,10 +115,10 @@ pub fn orbit(c: &Curves, name: &str) -> String {
     let layout = styled(Layout::auto_from_plots(&plots))
         .with_x_label("eccentricity ratio along x")
         .with_y_label("eccentricity ratio along y")
-        .with_x_axis_min(-1.05)
-        .with_x_axis_max(1.05)
-        .with_y_axis_min(-1.05)
-        .with_y_axis_max(1.05)
+        .with_x_axis_min(-1.2)
+        .with_x_axis_max(1.2)
+        .with_y_axis_min(-1.2)
+        .with_y_axis_max(1.2)
         .with_x_tick_step(0.5)
         .with_y_tick_step(0.5)
         .with_tick_format(TickFormat::Fixed(1))
@@ -108,7 +126,7 @@ pub fn orbit(c: &Curves, name: &str) -> String {
         .with_height(top + side + bottom)
         .with_force_margins(left, right)
         .with_force_margins_y(top, bottom)
-        .with_legend_position(LegendPosition::InsideTopRight);
+        .with_legend_position(LegendPosition::InsideBottomRight);
     render(plots, layout, name)
 }
 
@@ -134,9 +152,16 @@ pub fn map(c: &Curves, name: &str) -> String {
     let around = c.pressure_map_mpa.len();
     let every = around.div_ceil(MAP_COLUMNS).max(1);
     let across = c.pressure_map_mpa.first().map_or(0, Vec::len);
+    let peak = |i: &usize| c.pressure_map_mpa[*i].iter().copied().fold(0.0, f64::max);
+    let highest = (0..around).max_by(|a, b| peak(a).total_cmp(&peak(b))).unwrap_or(0);
+    // The picture is cut where the pressure is not: opposite to 0 if the peak is near 0.
+    let near_zero = highest < around / 4 || highest > 3 * around / 4;
+    let first_deg = if near_zero { -180.0 } else { 0.0 };
+    let first = if near_zero { around / 2 } else { 0 };
     // kuva draws rows upwards: one row per axial cell, one column per angle.
+    let column = |i: usize| &c.pressure_map_mpa[(first + i) % around];
     let grid: Vec<Vec<f64>> =
-        (0..across).map(|j| (0..around).step_by(every).map(|i| c.pressure_map_mpa[i][j]).collect()).collect();
+        (0..across).map(|j| (0..around).step_by(every).map(|i| column(i)[j]).collect()).collect();
     let top = grid.iter().flatten().copied().fold(0.0f64, f64::max);
     let half_cell = 180.0 / around as f64 * every as f64;
     let plots: Vec<Plot> = vec![
@@ -148,7 +173,7 @@ pub fn map(c: &Curves, name: &str) -> String {
         Heatmap::new()
             .with_data(grid)
             .with_color_map(ColorMap::Cividis)
-            .with_x_range(-half_cell, 360.0 - half_cell)
+            .with_x_range(first_deg - half_cell, first_deg + 360.0 - half_cell)
             .with_y_range(-c.width_mm / 2.0, c.width_mm / 2.0)
             .with_cell_size(1.0)
             .into(),
@@ -156,8 +181,8 @@ pub fn map(c: &Curves, name: &str) -> String {
     let layout = styled(Layout::auto_from_plots(&plots))
         .with_x_label("angle around the shell [deg]")
         .with_y_label("axial position [mm]")
-        .with_x_axis_min(-half_cell)
-        .with_x_axis_max(360.0 - half_cell)
+        .with_x_axis_min(first_deg - half_cell)
+        .with_x_axis_max(first_deg + 360.0 - half_cell)
         .with_y_axis_min(-c.width_mm / 2.0)
         .with_y_axis_max(c.width_mm / 2.0)
         .with_x_tick_step(45.0)
@@ -209,6 +234,6 @@ pub fn convergence(report: &Report, name: &str) -> String {
                 .with_stroke_width(1.2)
                 .with_label("tolerance"),
         )
-        .with_legend_position(LegendPosition::InsideTopRight);
+        .with_legend_position(LegendPosition::InsideTopCenter);
     render(plots, layout, name)
 }

@@ -42,6 +42,7 @@ pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
         })
         .collect();
     let convergence = (!report.history.is_empty()).then(|| figures::convergence(report, "convergence"));
+    let cylinder = (!findings.cylinder.is_empty()).then(|| figures::cylinder(&findings.cylinder, "cylinder"));
     let study = toml::to_string_pretty(&report.provenance.study).unwrap_or_default();
     let mut environment = Environment::new();
     environment.set_auto_escape_callback(|_| minijinja::AutoEscape::Html);
@@ -53,6 +54,7 @@ pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
         r => Value::from(Serde(report)),
         cycles => Value::from(Serde(cycles)),
         convergence,
+        cylinder,
         study,
     })
 }

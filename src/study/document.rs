@@ -118,13 +118,14 @@ impl Walk {
         self.spans.value.insert(path.to_owned(), value.span());
         match value.get_ref() {
             DeValue::String(s) => Value::String(s.to_string()),
+            // Numbers that are none go on as text, so that the check can name their key.
             DeValue::Integer(i) => match i64::from_str_radix(i.as_str(), i.radix()) {
                 Ok(n) => n.into(),
-                Err(_) => self.refuse("the integer is out of range", value.span()),
+                Err(_) => Value::String(i.as_str().to_owned()),
             },
             DeValue::Float(f) => match f.as_str().parse().ok().and_then(Number::from_f64) {
                 Some(n) => Value::Number(n),
-                None => self.refuse("the number must be finite", value.span()),
+                None => Value::String(f.as_str().to_owned()),
             },
             DeValue::Boolean(b) => Value::Bool(*b),
             DeValue::Datetime(d) => Value::String(d.to_string()),

@@ -32,12 +32,22 @@ pub struct StudyErrors {
 }
 
 /// Collects mistakes while a file is checked.
-#[derive(Default)]
 pub(super) struct Faults {
     list: Vec<(String, String)>,
+    raw: Value,
 }
 
 impl Faults {
+    /// No mistakes yet in a document.
+    pub fn of(raw: Value) -> Self {
+        Self { list: Vec::new(), raw }
+    }
+
+    /// What stands in the document at a path.
+    pub fn raw(&self, path: &str) -> Option<&Value> {
+        self.raw.pointer(&format!("/{}", path.replace('.', "/").replace('[', "/").replace(']', "")))
+    }
+
     /// Notes a mistake.
     pub fn add(&mut self, path: &str, message: impl Into<String>) {
         self.list.push((path.to_owned(), message.into()));
@@ -123,7 +133,11 @@ impl Faults {
     /// A number that must lie in a range; also notes numbers that are not finite.
     pub fn range(&mut self, value: Option<f64>, path: &str, ok: impl Fn(f64) -> bool, words: &str) {
         if let Some(v) = value.filter(|v| !v.is_finite() || !ok(*v)) {
-            self.add(path, format!("must be {words}, found {}", crate::report::short(v)));
+            let found = match self.raw(path) {
+                Some(Value::String(text)) => text.clone(),
+                _ => crate::report::short(v),
+            };
+            self.add(path, format!("must be {words}, found {found}"));
         }
     }
 }

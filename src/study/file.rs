@@ -15,6 +15,20 @@ use std::collections::BTreeMap;
 /// Keys nobody knows.
 pub type Unknown = BTreeMap<String, Value>;
 
+/// A quantity whose kind depends on another key: text with a number and a unit.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(transparent)]
+pub struct QuantityText(pub String);
+
+impl<'de> Deserialize<'de> for QuantityText {
+    fn deserialize<D: serde::Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        match Value::deserialize(d)? {
+            Value::String(text) => Ok(Self(text)),
+            _ => Err(serde::de::Error::custom("expected a quantity with its unit in quotes, like \"65 mm\"")),
+        }
+    }
+}
+
 macro_rules! section {
     ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $kind:ty,)* }) => {
         $(#[$doc])*
@@ -86,11 +100,11 @@ section! {
         rotating_mass: Mass,
         /// Absolute pressure below the piston. Default "1 bar".
         crankcase_pressure: Pressure,
-        /// Angle between the banks, 0 for an in-line engine. Default "0 deg". For main bearings.
+        /// Angle between the banks, 0 for an in-line engine; bank A stands ahead of bank B in the sense of rotation (negative: behind). Default "0 deg". For main bearings.
         vee_angle: Angle,
         /// Angle of each throw ahead of the first. For main bearings.
         throw_angles: Vec<Given<Angle>>,
-        /// Cylinders in the order they fire, like "A1" (bank and throw). For main bearings.
+        /// All cylinders in the order they fire, like "A1" (bank and throw, counted from the free end). For main bearings.
         firing_order: Vec<String>,
         /// Unbalanced mass of one throw at the crank radius (pin and webs less counterweights). Default "0 kg". For main bearings.
         throw_mass: Mass,
@@ -209,7 +223,7 @@ pub enum FilmModelName {
 pub enum CavitationName {
     /// It ruptures at the cavitation pressure.
     SwiftStieber,
-    /// It holds any tension; for comparison with closed forms.
+    /// It holds any tension; for comparison with closed forms. Many loads have no stable orbit in such a film.
     None,
 }
 
@@ -283,11 +297,11 @@ section! {
         /// "<bearing>.width", "<bearing>.diameter", "<bearing>.diametral_clearance" or "oil.inlet_temperature".
         name: String,
         /// Smallest allowed value, with unit.
-        lower: String,
+        lower: QuantityText,
         /// Largest allowed value, with unit.
-        upper: String,
+        upper: QuantityText,
         /// Value the search starts from, with unit. Default: the value of that key in the study.
-        start: String,
+        start: QuantityText,
     }
 }
 
@@ -299,9 +313,9 @@ section! {
         /// Bearing it applies to. Default: every bearing.
         bearing: String,
         /// Smallest allowed value, with unit.
-        at_least: String,
+        at_least: QuantityText,
         /// Largest allowed value, with unit.
-        at_most: String,
+        at_most: QuantityText,
     }
 }
 

@@ -44,7 +44,8 @@ impl<'de, T: for<'a> Deserialize<'a>> Deserialize<'de> for Given<T> {
     fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
         let value = Value::deserialize(d)?;
         let found = shortened(&value);
-        Ok(T::deserialize(value).map_or_else(|e| Self::Wrong { found, problem: e.to_string() }, Self::Value))
+        Ok(T::deserialize(value)
+            .map_or_else(|e| Self::Wrong { found, problem: plain(&e.to_string()) }, Self::Value))
     }
 }
 
@@ -69,6 +70,26 @@ impl<T: JsonSchema> JsonSchema for Given<T> {
     fn inline_schema() -> bool {
         T::inline_schema()
     }
+}
+
+/// serde's words for users who do not write Rust.
+fn plain(problem: &str) -> String {
+    let expected = problem.rsplit("expected ").next().unwrap_or_default();
+    if problem.starts_with("unknown variant") {
+        return format!("expected {}", expected.replace('`', "\""));
+    }
+    if !problem.starts_with("invalid") {
+        return problem.to_owned();
+    }
+    let words = match expected {
+        e if e.starts_with("struct") || e.starts_with("a map") => "a section with keys",
+        e if e.starts_with("a sequence") => "a list",
+        e if e.starts_with("f64") => "a number",
+        e if e.starts_with('u') => "a whole number that is not negative",
+        e if e.starts_with("a string") => "text in quotes",
+        other => other,
+    };
+    format!("expected {words}")
 }
 
 fn shortened(value: &Value) -> String {

@@ -107,8 +107,11 @@ fn indicated(
     let names: &[(&str, f64)] = &[("pressure_mpa", 1e6), ("pressure_bar", 1e5), ("pressure_pa", 1.0)];
     let result = periodic(&table, WORKING_CYCLE_RAD, &[names]).and_then(|(angles, mut columns)| {
         let pressure = columns.remove(0);
-        if pressure.iter().any(|p| *p <= 0.0) {
-            return Err("pressures must be absolute, so above zero".to_owned());
+        if let Some(p) = pressure.iter().find(|p| !(0.0..=1e8).contains(*p) || **p == 0.0) {
+            let found = crate::report::short(*p * 1e-6);
+            return Err(format!(
+                "pressures must be absolute, above zero and at most 100 MPa, found {found} MPa"
+            ));
         }
         CylinderPressure::from_table(angles, pressure).map_err(|e| e.to_string())
     });

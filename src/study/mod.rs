@@ -8,8 +8,10 @@
 //! Reading never stops at the first mistake: every value that does not fit is kept as [`Given::Wrong`], and the check
 //! reports all of them with their places.
 
+mod bearings;
 mod build;
 mod check;
+mod design;
 mod document;
 mod engines;
 mod faults;
@@ -18,6 +20,8 @@ mod given;
 mod machine;
 mod observe;
 mod run;
+mod schema;
+mod sections;
 mod table;
 mod vocabulary;
 
@@ -30,13 +34,9 @@ pub use faults::{Fault, StudyErrors};
 pub use file::StudyFile;
 pub use given::Given;
 pub use run::run;
+pub use schema::schema;
 
 pub use vocabulary::{QuantityName, Variable};
 
 /// Version of the study format this program reads.
 pub const FORMAT: &str = "stribeck-study/1";
-
-/// JSON Schema (2020-12) of the study file.
-pub fn schema() -> serde_json::Value {
-    schemars::schema_for!(StudyFile).to_value()
-}

@@ -7,9 +7,24 @@ use crate::dae::{At, Dae};
 use crate::film::Gap;
 use crate::optimise::Evaluated;
 use crate::orbit::Orbit;
-use crate::report::{Curves, Extremum, Loss, OrbitReport};
+use crate::report::{Curves, Extremum, Loss, OrbitReport, PressureReport};
 
 const L_MIN: f64 = 1e-3 / 60.0;
+
+/// Cylinder pressure at the first operating point, in numbers and as a curve (degrees, MPa).
+pub(super) fn cylinder(study: &Study) -> (Option<PressureReport>, Vec<(f64, f64)>) {
+    let (Some(cylinder), Some(point)) = (&study.cylinder, study.points.first()) else {
+        return (None, Vec::new());
+    };
+    let diagram = cylinder.pressure.scaled(point.load_factor);
+    let (peak, at) = diagram.peak();
+    let report = PressureReport {
+        imep_mpa: diagram.imep_pa(&cylinder.crank) * 1e-6,
+        peak_mpa: Extremum { value: peak * 1e-6, crank_angle_deg: at.to_degrees() },
+    };
+    let curve = (0..=720).map(f64::from).map(|a| (a, diagram.at(a.to_radians()) * 1e-6)).collect();
+    (Some(report), curve)
+}
 
 /// Loss of one case.
 pub(super) fn loss(orbit: &Orbit) -> Loss {

@@ -4,6 +4,7 @@ use super::build::{Plan, plan};
 use super::check::Study;
 use super::file::FilmModelName;
 use super::observe;
+use super::vocabulary::QuantityName;
 use crate::gradient::{GradientTable, taylor_table};
 use crate::optimise::{Evaluated, EvaluationError, Minimum, Outcome, Sense, minimise};
 use crate::report::{
@@ -17,6 +18,10 @@ use std::time::Instant;
 
 /// A parameter closer to a bound than this share of its box stands at it.
 const AT_BOUND: f64 = 1e-6;
+/// Relative distance from its limit up to which a constraint can be active.
+const ACTIVE_GAP: f64 = 1e-4;
+/// Relative violation that counts as none.
+const FEASIBLE: f64 = 1e-7;
 /// A constraint whose multiplier exceeds this share of the objective is active.
 const ACTIVE: f64 = 1e-6;
 /// First step (relative) and number of steps of the Taylor test.
@@ -82,7 +87,6 @@ fn report(
     report.history = minimum.history.clone();
     if let Some(known) = &known {
         report.objective = objective(study, plan, known);
-        report.constraints = constraints(study, plan, minimum, &known.optimum);
         let start = known.start.as_deref();
         let all: Vec<Curves> = (0..plan.cases.len())
             .filter_map(|c| observe::curves(study, plan, c, &minimum.x, &known.optimum, start))
@@ -91,6 +95,11 @@ fn report(
             if let Ok(model) = plan.problem.model(case, &minimum.x) {
                 report.orbit.push(observe::orbit_report(&model, &known.optimum.orbits[case], c));
             }
+        }
+        report.constraints = constraints(study, plan, minimum, &known.optimum, &all);
+        if report.constraints.iter().any(|c| !c.met) {
+            // A design that breaks its limits saves nothing.
+            report.objective.saving_percent = None;
         }
         if minimum.outcome != Outcome::Cancelled {
             report.gradient = gradient(study, plan, &minimum.x, &known.optimum, context).ok();
@@ -134,8 +143,9 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
             saving_percent: None,
             operating_points: Vec::new(),
         },
-        constraints: Vec::new(),
+        constraints: unknown_constraints(study),
         kkt: KktReport { residual: None, tolerance: study.optimiser.tolerance },
+        cylinder_pressure: observe::cylinder(study).0,
         gradient: None,
         orbit: Vec::new(),
         history: Vec::new(),
@@ -153,12 +163,12 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
             study: study.to_json(),
         },
     };
-    Findings { report, curves: Vec::new() }
+    Findings { report, curves: Vec::new(), cylinder: observe::cylinder(study).1 }
 }
 
 fn design(study: &Study, x: &[f64]) -> Vec<DesignValue> {
     let value = |(p, x): (&super::ParameterPlan, &f64)| {
-        let shown = |v: f64| p.variable.shown(v);
+        let shown = |v: f64| tidy(p.variable.shown(v));
         let near = AT_BOUND * (p.upper - p.lower);
         let at_bound = if *x <= p.lower + near {
             AtBound::Lower
@@ -201,8 +211,52 @@ fn objective(study: &Study, plan: &Plan, known: &Known) -> ObjectiveReport {
     }
 }
 
-fn constraints(study: &Study, plan: &Plan, minimum: &Minimum, at: &Evaluated) -> Vec<ConstraintReport> {
+/// The limits when no design was simulated.
+fn unknown_constraints(study: &Study) -> Vec<ConstraintReport> {
+    let all = study.constraints.iter().flat_map(|c| {
+        let bearings = (0..study.bearings.len()).filter(|b| c.bearing.is_none_or(|only| only == *b));
+        bearings.flat_map(move |b| study.points.iter().map(move |p| (c, b, p)))
+    });
+    all.map(|(c, bearing, point)| {
+        let (unit, scale) = c.quantity.unit();
+        ConstraintReport {
+            quantity: c.quantity.key().to_owned(),
+            bearing: study.bearings[bearing].name.clone(),
+            operating_point: point.name.clone(),
+            sense: words(c.sense).to_owned(),
+            value: None,
+            exact_value: None,
+            limit: tidy(c.limit / scale),
+            unit: unit.to_owned(),
+            active: false,
+            met: false,
+            price_w_per_unit: None,
+        }
+    })
+    .collect()
+}
+
+fn words(sense: Sense) -> &'static str {
+    match sense {
+        Sense::AtLeast => "at least",
+        Sense::AtMost => "at most",
+    }
+}
+
+/// A number without the noise of unit conversion.
+fn tidy(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+fn constraints(
+    study: &Study,
+    plan: &Plan,
+    minimum: &Minimum,
+    at: &Evaluated,
+    curves: &[Curves],
+) -> Vec<ConstraintReport> {
     let objective = minimum.values.as_ref().map_or(1.0, |v| v.objective.abs());
+    let optimal = matches!(minimum.outcome, Outcome::Converged | Outcome::AlmostConverged);
     let row = |(k, label): (usize, &super::LimitLabel)| {
         let (c, case) = (&study.constraints[label.constraint], plan.cases[label.case]);
         let (unit, scale) = c.quantity.unit();
@@ -214,18 +268,26 @@ fn constraints(study: &Study, plan: &Plan, minimum: &Minimum, at: &Evaluated) ->
             Sense::AtLeast => 1.0 - value / c.limit,
             Sense::AtMost => value / c.limit - 1.0,
         };
+        let active = excess > -ACTIVE_GAP && multiplier > ACTIVE * objective;
+        // Outputs hold the smooth maximum over the cells; the exact one stands in the curves.
+        let exact_value = match c.quantity {
+            QuantityName::MaxFilmPressure => {
+                curves[label.case].pressure_max_mpa.iter().copied().fold(0.0, f64::max)
+            }
+            _ => orbit.value(&exact) / scale,
+        };
         ConstraintReport {
             quantity: c.quantity.key().to_owned(),
             bearing: study.bearings[case.bearing].name.clone(),
             operating_point: study.points[case.point].name.clone(),
-            sense: if c.sense == Sense::AtLeast { "at least" } else { "at most" }.to_owned(),
+            sense: words(c.sense).to_owned(),
             value: Some(value / scale),
-            exact_value: Some(orbit.value(&exact) / scale),
-            limit: c.limit / scale,
+            exact_value: Some(exact_value),
+            limit: tidy(c.limit / scale),
             unit: unit.to_owned(),
-            active: multiplier > ACTIVE * objective,
-            met: excess <= study.optimiser.tolerance,
-            price_w_per_unit: multiplier / c.limit * scale,
+            active,
+            met: excess <= study.optimiser.tolerance.max(FEASIBLE),
+            price_w_per_unit: optimal.then_some(if active { multiplier / c.limit * scale } else { 0.0 }),
         }
     };
     plan.limits.iter().enumerate().map(row).collect()

@@ -9,6 +9,10 @@ use std::path::Path;
 
 /// Largest table that is read.
 const MOST_ROWS: usize = 100_000;
+/// Bad rows that are named one by one.
+const NAMED_ROWS: usize = 5;
+/// Widest hole in a periodic table, degrees: a spline across more would be invented.
+const WIDEST_HOLE_DEG: f64 = 30.0;
 
 /// A table: either a file, or columns and rows.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -96,16 +100,28 @@ fn read_csv(file: &str, base: Option<&Path>) -> Result<Table, String> {
     let broken = |e: csv::Error| format!("'{file}' is no CSV table: {e}");
     let columns = reader.headers().map_err(broken)?.iter().map(str::to_owned).collect();
     let mut rows = Vec::new();
+    let mut bad = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(broken)?;
+        let record = match record {
+            Ok(record) => record,
+            Err(e) => {
+                bad.push(broken(e));
+                continue;
+            }
+        };
         let line = record.position().map_or(0, csv::Position::line);
-        let numbers: Result<Vec<f64>, String> = record
-            .iter()
-            .map(|v| v.parse().map_err(|_| format!("line {line} of '{file}': '{v}' is not a number")))
-            .collect();
-        rows.push(numbers?);
+        let number = |v: &str| v.parse().ok().filter(|v: &f64| v.is_finite());
+        match record.iter().map(|v| number(v).ok_or(v)).collect::<Result<Vec<f64>, &str>>() {
+            Ok(row) => rows.push(row),
+            Err(v) => bad.push(format!("line {line} of '{file}': '{v}' is not a finite number")),
+        }
     }
-    Ok(Table { columns, rows })
+    let more = bad.len().saturating_sub(NAMED_ROWS);
+    bad.truncate(NAMED_ROWS);
+    if more > 0 {
+        bad.push(format!("and {more} more rows"));
+    }
+    if bad.is_empty() { Ok(Table { columns, rows }) } else { Err(bad.join("; ")) }
 }
 
 /// Crank angles in radians and one or more columns, one period without a repeated end point.
@@ -134,6 +150,22 @@ pub(super) fn periodic(
         values.iter_mut().for_each(|c| {
             c.pop();
         });
+    }
+    let degrees = |v: f64| crate::report::short(v.to_degrees());
+    if let Some(i) = (1..angles.len()).find(|&i| angles[i] <= angles[i - 1]) {
+        return Err(format!(
+            "crank angles must increase: {} comes after {}",
+            degrees(angles[i]),
+            degrees(angles[i - 1])
+        ));
+    }
+    let next = |i: usize| angles.get(i + 1).copied().unwrap_or(angles[0] + period_rad);
+    if let Some(i) = (0..angles.len()).find(|&i| next(i) - angles[i] > WIDEST_HOLE_DEG * degree) {
+        let (from, to) = (degrees(angles[i]), degrees(next(i)));
+        return Err(format!(
+            "must cover the whole cycle of {}: nothing stands between {from} and {to} degrees",
+            degrees(period_rad)
+        ));
     }
     Ok((angles, values))
 }

@@ -1,0 +1,65 @@
+//! JSON Schema of the study file: made from the types, with the keys that must be there.
+
+use super::StudyFile;
+use serde_json::{Value, json};
+
+/// Keys without a default, by section.
+const REQUIRED: &[(&str, &[&str])] = &[
+    ("StudyFile", &["format", "title", "bearings", "oil", "objective", "parameters"]),
+    ("MachineFile", &["bore", "throw", "oscillating_mass", "rotating_mass"]),
+    ("CylinderPressureFile", &["source"]),
+    ("BearingFile", &["kind", "width", "diameter", "diametral_clearance"]),
+    ("OilFile", &["inlet_temperature"]),
+    ("ObjectiveFile", &["operating_points"]),
+    ("OperatingPointFile", &["name", "speed"]),
+    ("ParameterFile", &["name", "lower", "upper"]),
+    ("ConstraintFile", &["quantity"]),
+];
+
+/// JSON Schema (2020-12) of the study file. What depends on several keys is left to the check.
+pub fn schema() -> Value {
+    let mut schema = schemars::schema_for!(StudyFile).to_value();
+    without_null_defaults(&mut schema);
+    for (section, keys) in REQUIRED {
+        let at = match *section {
+            "StudyFile" => Some(&mut schema),
+            name => schema.get_mut("$defs").and_then(|d| d.get_mut(name)),
+        };
+        if let Some(object) = at {
+            object["required"] = json!(keys);
+        }
+    }
+    schema["properties"]["format"]["const"] = json!(super::FORMAT);
+    schema
+}
+
+/// An absent key has no value, not the value null.
+fn without_null_defaults(value: &mut Value) {
+    match value {
+        Value::Object(map) => {
+            if map.get("default").is_some_and(Value::is_null) {
+                map.remove("default");
+            }
+            map.values_mut().for_each(without_null_defaults);
+        }
+        Value::Array(list) => list.iter_mut().for_each(without_null_defaults),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn required_keys_exist() {
+        let schema = schema();
+        for (section, keys) in REQUIRED {
+            let object = if *section == "StudyFile" { &schema } else { &schema["$defs"][*section] };
+            for key in *keys {
+                assert!(object["properties"].get(*key).is_some(), "{section}.{key}");
+            }
+        }
+        assert!(!schema.to_string().contains("\"default\":null"));
+    }
+}
