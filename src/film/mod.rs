@@ -20,6 +20,7 @@ mod gap;
 mod mesh;
 mod reynolds;
 mod reynolds_derivatives;
+mod reynolds_model;
 mod short;
 mod steady;
 

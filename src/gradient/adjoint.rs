@@ -12,7 +12,7 @@
 //! the memory left at its beginning, until it has faded. That closes the period exactly. Unlike a one-cycle adjoint on a
 //! frozen start state, this sees the start state move with the design.
 
-use super::{CLOSED, Closure, EngineName, GradientEngine, GradientError, GradientTable, MOST_SWEEPS};
+use super::{EngineName, GradientEngine, GradientError, GradientTable, Sweep, sweep_until_closed};
 use crate::dae::{At, Cotangent, SensitiveDae};
 use crate::orbit::{Orbit, OrbitOptions, Quantity};
 use crate::run::{Cancel, Cost};
@@ -34,30 +34,11 @@ impl<M: SensitiveDae> GradientEngine<M> for Adjoint {
         of: &[Quantity],
         cancel: &Cancel,
     ) -> Result<GradientTable, GradientError> {
-        let mut sweep = Sweep::new(model, at, of);
-        let mut taken = 0;
-        let mut closure = Closure::new();
-        for pass in 0..MOST_SWEEPS {
-            for n in (0..at.steps()).rev() {
-                cancel.check()?;
-                closure.note(sweep.step(n, pass == 0)?);
-                taken += 1;
-                if pass > 0 && closure.left() <= CLOSED {
-                    let sweeps = taken as f64 / at.steps() as f64;
-                    return Ok(GradientTable {
-                        rows: sweep.rows,
-                        sweeps,
-                        closure: closure.left(),
-                        cost: sweep.cost,
-                    });
-                }
-            }
-        }
-        Err(GradientError::NotClosed)
+        sweep_until_closed(Backward::new(model, at, of), (0..at.steps()).rev(), at.steps(), cancel)
     }
 }
 
-struct Sweep<'a, M: SensitiveDae> {
+struct Backward<'a, M: SensitiveDae> {
     model: &'a M,
     orbit: &'a Orbit,
     of: &'a [Quantity],
@@ -74,7 +55,7 @@ struct Sweep<'a, M: SensitiveDae> {
     cost: Cost,
 }
 
-impl<'a, M: SensitiveDae> Sweep<'a, M> {
+impl<'a, M: SensitiveDae> Backward<'a, M> {
     fn new(model: &'a M, orbit: &'a Orbit, of: &'a [Quantity]) -> Self {
         let n = model.states();
         let columns = || vec![0.0; n * of.len()];
@@ -93,6 +74,29 @@ impl<'a, M: SensitiveDae> Sweep<'a, M> {
         }
     }
 
+    /// Adds the products with the new adjoint states, completes the memory and measures it.
+    fn hand_on(&mut self, n: usize) -> f64 {
+        let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rate };
+        let size = self.model.states();
+        let mut largest = 0.0f64;
+        for r in 0..self.of.len() {
+            let column = r * size..(r + 1) * size;
+            let lambda = &self.lambda[column.clone()];
+            let memory = &mut self.memory[0][column.clone()];
+            self.model.transposed_times(at, lambda, memory, &mut self.rows[r]);
+            let now = memory.iter().fold(0.0f64, |a, c| a.max(c.abs()));
+            self.scale[r] = self.scale[r].max(now);
+            if self.scale[r] > 0.0 {
+                largest = largest.max(now / self.scale[r]);
+            }
+            // The film's adjoint unknowns are not needed again: the next step starts from memory alone.
+            self.lambda[column].fill(0.0);
+        }
+        largest
+    }
+}
+
+impl<M: SensitiveDae> Sweep for Backward<'_, M> {
     /// Steps back to `n` and adds its share; returns the relative size of the memory.
     fn step(&mut self, n: usize, forced: bool) -> Result<f64, GradientError> {
         let (model, size) = (self.model, self.model.states());
@@ -135,24 +139,7 @@ impl<'a, M: SensitiveDae> Sweep<'a, M> {
         Ok(self.hand_on(n))
     }
 
-    /// Adds the products with the new adjoint states, completes the memory and measures it.
-    fn hand_on(&mut self, n: usize) -> f64 {
-        let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rate };
-        let size = self.model.states();
-        let mut largest = 0.0f64;
-        for r in 0..self.of.len() {
-            let column = r * size..(r + 1) * size;
-            let lambda = &self.lambda[column.clone()];
-            let memory = &mut self.memory[0][column.clone()];
-            self.model.transposed_times(at, lambda, memory, &mut self.rows[r]);
-            let now = memory.iter().fold(0.0f64, |a, c| a.max(c.abs()));
-            self.scale[r] = self.scale[r].max(now);
-            if self.scale[r] > 0.0 {
-                largest = largest.max(now / self.scale[r]);
-            }
-            // The film's adjoint unknowns are not needed again: the next step starts from memory alone.
-            self.lambda[column].fill(0.0);
-        }
-        largest
+    fn result(self) -> (Vec<Vec<f64>>, Cost) {
+        (self.rows, self.cost)
     }
 }

@@ -129,6 +129,41 @@ pub trait GradientEngine<M: SensitiveDae>: Send + Sync {
     ) -> Result<GradientTable, GradientError>;
 }
 
+/// One engine's sweep over the cycle, step by step.
+trait Sweep {
+    /// Takes the step at `n`; a forced step adds its own share, any other only carries memory on. Returns the memory's size.
+    fn step(&mut self, n: usize, forced: bool) -> Result<f64, GradientError>;
+    /// Rows and cost gathered so far.
+    fn result(self) -> (Vec<Vec<f64>>, Cost);
+}
+
+/// One forced sweep in the order given, then sweeps that carry the memory alone until it has faded.
+fn sweep_until_closed(
+    mut sweep: impl Sweep,
+    order: impl Iterator<Item = usize> + Clone,
+    steps: usize,
+    cancel: &Cancel,
+) -> Result<GradientTable, GradientError> {
+    let (mut closure, mut taken) = (Closure::new(), 0);
+    for pass in 0..MOST_SWEEPS {
+        for n in order.clone() {
+            cancel.check()?;
+            closure.note(sweep.step(n, pass == 0)?);
+            taken += 1;
+            if pass > 0 && closure.left() <= CLOSED {
+                let (rows, cost) = sweep.result();
+                return Ok(GradientTable {
+                    rows,
+                    sweeps: taken as f64 / steps as f64,
+                    closure: closure.left(),
+                    cost,
+                });
+            }
+        }
+    }
+    Err(GradientError::NotClosed)
+}
+
 /// Follows a memory that sweeps over the cycle until it has faded.
 struct Closure {
     largest: f64,

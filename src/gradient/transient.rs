@@ -10,7 +10,7 @@
 //! The first sweep starts from `s = 0` before the cycle. As everything is linear, what the wrong start left out is the
 //! response to the memory at the end of the sweep; further sweeps carry that memory alone, until it has faded.
 
-use super::{CLOSED, Closure, EngineName, GradientEngine, GradientError, GradientTable, MOST_SWEEPS};
+use super::{EngineName, GradientEngine, GradientError, GradientTable, Sweep, sweep_until_closed};
 use crate::dae::{At, Direction, SensitiveDae};
 use crate::orbit::{Orbit, OrbitOptions, Quantity};
 use crate::run::{Cancel, Cost};
@@ -32,30 +32,11 @@ impl<M: SensitiveDae> GradientEngine<M> for Transient {
         of: &[Quantity],
         cancel: &Cancel,
     ) -> Result<GradientTable, GradientError> {
-        let mut sweep = Sweep::new(model, at, of);
-        let mut taken = 0;
-        let mut closure = Closure::new();
-        for pass in 0..MOST_SWEEPS {
-            for n in 0..at.steps() {
-                cancel.check()?;
-                closure.note(sweep.step(n, pass == 0)?);
-                taken += 1;
-                if pass > 0 && closure.left() <= CLOSED {
-                    let sweeps = taken as f64 / at.steps() as f64;
-                    return Ok(GradientTable {
-                        rows: sweep.rows,
-                        sweeps,
-                        closure: closure.left(),
-                        cost: sweep.cost,
-                    });
-                }
-            }
-        }
-        Err(GradientError::NotClosed)
+        sweep_until_closed(Forward::new(model, at, of), 0..at.steps(), at.steps(), cancel)
     }
 }
 
-struct Sweep<'a, M: SensitiveDae> {
+struct Forward<'a, M: SensitiveDae> {
     model: &'a M,
     orbit: &'a Orbit,
     of: &'a [Quantity],
@@ -68,7 +49,7 @@ struct Sweep<'a, M: SensitiveDae> {
     cost: Cost,
 }
 
-impl<'a, M: SensitiveDae> Sweep<'a, M> {
+impl<'a, M: SensitiveDae> Forward<'a, M> {
     fn new(model: &'a M, orbit: &'a Orbit, of: &'a [Quantity]) -> Self {
         let (n, np) = (model.states(), model.parameters().len());
         let column = || vec![0.0; n * np];
@@ -85,6 +66,37 @@ impl<'a, M: SensitiveDae> Sweep<'a, M> {
         }
     }
 
+    fn memory_size(&self, z: &[f64], j: usize) -> f64 {
+        let size = self.model.states();
+        let mut change = vec![0.0; size];
+        for &i in self.model.memory() {
+            change[i] = self.s[0][j * size + i];
+        }
+        self.model.change(z, &change)
+    }
+
+    fn add_share(&mut self, n: usize, forced: bool) {
+        let (model, size) = (self.model, self.model.states());
+        let np = model.parameters().len();
+        let a = self.orbit.scheme.weights().map(|a| a / self.orbit.dt_s);
+        let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rate };
+        let (mut rate, mut dy) = (vec![0.0; size], vec![0.0; model.outputs()]);
+        for j in 0..np {
+            let s = |k: usize| &self.s[k][j * size..(j + 1) * size];
+            for &i in model.memory() {
+                rate[i] = a[0] * s(0)[i] + a[1] * s(1)[i] + a[2] * s(2)[i];
+            }
+            let mut p = vec![0.0; np];
+            p[j] = if forced { 1.0 } else { 0.0 };
+            model.output_tangent(at, Direction { z: s(0), rate: &rate, p: &p }, &mut dy);
+            for ((row, quantity), weights) in self.rows.iter_mut().zip(self.of).zip(&self.weights) {
+                row[j] += weights[n] * dy[quantity.output];
+            }
+        }
+    }
+}
+
+impl<M: SensitiveDae> Sweep for Forward<'_, M> {
     /// Advances all sensitivities to step `n` and adds their share; returns the size of the memory.
     fn step(&mut self, n: usize, forced: bool) -> Result<f64, GradientError> {
         let (model, size) = (self.model, self.model.states());
@@ -118,32 +130,7 @@ impl<'a, M: SensitiveDae> Sweep<'a, M> {
         Ok((0..np).map(|j| p[j].abs() * self.memory_size(z, j)).fold(0.0, f64::max))
     }
 
-    fn memory_size(&self, z: &[f64], j: usize) -> f64 {
-        let size = self.model.states();
-        let mut change = vec![0.0; size];
-        for &i in self.model.memory() {
-            change[i] = self.s[0][j * size + i];
-        }
-        self.model.change(z, &change)
-    }
-
-    fn add_share(&mut self, n: usize, forced: bool) {
-        let (model, size) = (self.model, self.model.states());
-        let np = model.parameters().len();
-        let a = self.orbit.scheme.weights().map(|a| a / self.orbit.dt_s);
-        let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rate };
-        let (mut rate, mut dy) = (vec![0.0; size], vec![0.0; model.outputs()]);
-        for j in 0..np {
-            let s = |k: usize| &self.s[k][j * size..(j + 1) * size];
-            for &i in model.memory() {
-                rate[i] = a[0] * s(0)[i] + a[1] * s(1)[i] + a[2] * s(2)[i];
-            }
-            let mut p = vec![0.0; np];
-            p[j] = if forced { 1.0 } else { 0.0 };
-            model.output_tangent(at, Direction { z: s(0), rate: &rate, p: &p }, &mut dy);
-            for ((row, quantity), weights) in self.rows.iter_mut().zip(self.of).zip(&self.weights) {
-                row[j] += weights[n] * dy[quantity.output];
-            }
-        }
+    fn result(self) -> (Vec<Vec<f64>>, Cost) {
+        (self.rows, self.cost)
     }
 }

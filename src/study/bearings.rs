@@ -1,10 +1,10 @@
 //! Checks of the bearings and of the machine that loads them.
 
 use super::Given;
-use super::check::{BearingPlan, LoadPlan};
 use super::faults::{Faults, join};
 use super::file::{BearingFile, BearingKind, MachineFile, StudyFile};
 use super::machine::{self, zero};
+use super::plans::{BearingPlan, LoadPlan};
 use super::table::{TableFile, periodic};
 use crate::cranktrain::{Cylinder, LoadTable, VeeEngine};
 use crate::math::PeriodicSpline;

@@ -1,7 +1,8 @@
 //! From a checked study to a design problem: one case per bearing and operating point, one constraint row per limit and case.
 
-use super::check::{LoadPlan, Study};
+use super::check::Study;
 use super::file::{CavitationName, FilmModelName};
+use super::plans::LoadPlan;
 use super::vocabulary::QuantityName;
 use crate::cranktrain::{
     BearingLoad, BearingParameter, BearingSetup, Cylinder, JournalBearing, LoadTable, MainLoad, VeeEngine,

@@ -1,9 +1,9 @@
 //! Checks of what is varied and what is limited.
 
 use super::Given;
-use super::check::{BearingPlan, ConstraintPlan, ParameterPlan};
 use super::faults::{Faults, join};
 use super::file::{ConstraintFile, ParameterFile, QuantityText, StudyFile};
+use super::plans::{BearingPlan, ConstraintPlan, ParameterPlan};
 use super::vocabulary::{QuantityName, Variable};
 use crate::cranktrain::BearingParameter;
 use crate::optimise::Sense;

@@ -111,7 +111,7 @@ impl Faults {
     }
 
     /// Keys that do not exist, with the most similar one that does.
-    pub fn unknown<T: JsonSchema>(&mut self, unknown: &super::file::Unknown, path: &str) {
+    pub fn unknown<T: JsonSchema>(&mut self, unknown: &super::given::Unknown, path: &str) {
         if unknown.is_empty() {
             return;
         }

@@ -1,5 +1,6 @@
 //! The study file as it is written: every key, its meaning and its default. The JSON Schema is made from these types.
 
+use super::given::Unknown;
 use super::vocabulary::QuantityName;
 use super::{Given, table::TableFile};
 use crate::gradient::EngineName;
@@ -11,9 +12,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
-
-/// Keys nobody knows.
-pub type Unknown = BTreeMap<String, Value>;
 
 /// A quantity whose kind depends on another key: text with a number and a unit.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]

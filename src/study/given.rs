@@ -4,9 +4,13 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 /// Longest piece of a wrong value that is quoted back.
 const QUOTED: usize = 60;
+
+/// Keys of a section that nobody knows.
+pub type Unknown = BTreeMap<String, Value>;
 
 /// Value of a key.
 #[derive(Debug, Clone, PartialEq, Default)]

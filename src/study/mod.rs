@@ -19,6 +19,7 @@ mod file;
 mod given;
 mod machine;
 mod observe;
+mod plans;
 mod run;
 mod schema;
 mod sections;
@@ -26,13 +27,14 @@ mod table;
 mod vocabulary;
 
 pub use build::{CaseLabel, LimitLabel, Plan, plan};
-pub use check::{BearingPlan, ConstraintPlan, FilmPlan, OperatingPoint, ParameterPlan, Study};
+pub use check::Study;
 pub use document::Format;
 pub use engines::{EngineComparison, EngineRow, Sweep, compare_engines};
 
 pub use faults::{Fault, StudyErrors};
 pub use file::StudyFile;
 pub use given::Given;
+pub use plans::{BearingPlan, ConstraintPlan, FilmPlan, OperatingPoint, ParameterPlan};
 pub use run::run;
 pub use schema::schema;
 

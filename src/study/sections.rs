@@ -1,13 +1,13 @@
 //! Checks of the sections that stand for themselves: oil, film, orbit, objective, gradient, optimiser, assumptions.
 
 use super::Given;
-use super::check::{FilmPlan, OperatingPoint};
 use super::faults::{Faults, join, without_nulls};
 use super::file::{
     CavitationName, FilmFile, FilmModelName, GradientFile, MethodName, ObjectiveFile, OilFile,
     OperatingPointFile, OptimiserFile, OrbitFile, SchemeName, StudyFile,
 };
 use super::machine::zero;
+use super::plans::{FilmPlan, OperatingPoint};
 use crate::gradient::EngineName;
 use crate::laws::Viscosity;
 use crate::optimise::SqpOptions;

@@ -2,7 +2,7 @@
 
 use super::Given;
 use super::faults::{Faults, join};
-use super::file::Unknown;
+use super::given::Unknown;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
