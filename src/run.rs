@@ -1,4 +1,4 @@
-//! What a long computation shares with whoever started it: cancellation, progress, threads and counted work.
+//! What a long computation shares with whoever started it: cancellation, progress and counted work.
 //!
 //! Nothing here measures time; costs are counts, so that they can be tested and compared between machines.
 

@@ -61,7 +61,7 @@ fn floor(module: &str) -> usize {
     FLOORS.iter().position(|f| f.contains(&module)).unwrap_or_else(|| panic!("{module} stands on no floor"))
 }
 
-/// Names that follow `crate::` in the code, comments included: a doc link is a dependency of the mind.
+/// Names that follow `crate::` in the code; comments may point anywhere.
 fn uses(text: &str) -> Vec<String> {
     let code: String =
         text.lines().filter(|l| !l.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");

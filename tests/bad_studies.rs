@@ -69,6 +69,28 @@ fn each_kind_of_mistake_has_its_words() {
         ("at_least = \"3 um\"", "at_least = \"3 um\"\nat_most = \"4 um\""),
         ("quantity = \"min-film-thickness\"", "quantity = \"min-film-thickness\"\nbearing = \"main\""),
         ("kind = \"big-end\"", "kind = \"main\"\nmain_bearing = 1"),
+        ("bore = \"170 mm\"", "bore = \"170 mm\"\nthrow_angles = [\"0 deg\", 5]"),
+        (
+            "table.file = \"data/engine_pressure_170x215_digitised.csv\"",
+            "table.file = \"../operational-170x215.toml\"",
+        ),
+        (
+            "table.file = \"data/engine_pressure_170x215_digitised.csv\"",
+            "table.columns = [\"crank_angle_deg\", \"pressure_mpa\"]\ntable.rows = [[0.0, 1.0], [20.0, 2.0], [340.0, 1.0]]",
+        ),
+        (
+            "[oil]",
+            "[film]\ncells_around = 2000\ncells_across_half = 200\n[orbit]\nsteps_per_cycle = 100000\n[oil]",
+        ),
+        ("speed = \"1500 rpm\"", "speed = \"-1500 rpm\""),
+        ("upper = \"180 um\"", "upper = \"180 mm\""),
+        ("upper = \"65 mm\"", "upper = 65"),
+        ("density_15c = \"895 kg/m3\"", "density_15c = nan"),
+        ("kind = \"big-end\"", "kind = \"main\"\nmain_bearing = 9"),
+        (
+            "throw = \"107.5 mm\"",
+            "throw = \"107.5 mm\"\nthrow_angles = [\"0 deg\", \"90 deg\"]\nfiring_order = [\"A1\", \"B1\"]",
+        ),
         ("title = ", "title = \"twice\"\ntitle = "),
     ];
     let list: Vec<String> = cases.iter().map(|(from, to)| format!("{to:?}\n    {}", one(from, to))).collect();

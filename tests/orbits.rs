@@ -130,3 +130,50 @@ fn endings_are_told_apart() {
     assert!(matches!(end, Err(OrbitError::Cancelled(_))));
     assert!(bearing.with_parameters(&[-1.0, 70e-6]).is_err());
 }
+
+#[test]
+fn a_free_mass_moves_straight_in_the_frame_at_rest() {
+    // Seen from a shell that turns (connecting rod), a point at rest outside circles: its Coriolis, Euler and centrifugal terms
+    // must cancel. The bearing's residual less film force and load is mass times absolute acceleration.
+    let pressure = stribeck::cranktrain::CylinderPressure::from_table(
+        (0..72).map(|k| CYCLE * f64::from(k) / 72.0).collect(),
+        vec![2e5; 72],
+    )
+    .unwrap();
+    let cylinder = stribeck::cranktrain::Cylinder {
+        crank: stribeck::cranktrain::SliderCrank { throw_m: 0.1, rod_m: 0.3, offset_m: 0.0 },
+        bore_m: 0.1,
+        oscillating_mass_kg: 5.0,
+        rotating_mass_kg: 5.0,
+        crankcase_pressure_pa: 1e5,
+        pressure: Arc::new(pressure),
+    };
+    let mass = 40.0;
+    let bearing = model(Arc::new(ShortFilm::new(200.0)), BearingLoad::BigEnd(cylinder.clone()), mass);
+    let (fixed, omega) = ([2e-5, -1e-5], 150.0);
+    // Position in the turning frame at a time, by turning the fixed point back by the angle of the rod.
+    let seen = |t: f64| {
+        let (s, c) = cylinder.crank.at(t * omega).rod_rad[0].sin_cos();
+        [c * fixed[0] + s * fixed[1], -s * fixed[0] + c * fixed[1]]
+    };
+    for t in [0.003, 0.011, 0.02] {
+        let h = 1e-6;
+        let (a, b, d) = (seen(t - h), seen(t), seen(t + h));
+        let velocity = [0, 1].map(|k| (d[k] - a[k]) / (2.0 * h));
+        let acceleration = [0, 1].map(|k| (d[k] - 2.0 * b[k] + a[k]) / (h * h));
+        let z = [b[0], b[1], velocity[0], velocity[1]];
+        let rate = [velocity[0], velocity[1], acceleration[0], acceleration[1]];
+        let mut with = vec![0.0; 4];
+        bearing.residual(At { t_s: t, z: &z, rate: &rate }, &mut with);
+        // The same instant for a journal without mass tells film force and load.
+        let light = model(Arc::new(ShortFilm::new(200.0)), BearingLoad::BigEnd(cylinder.clone()), 0.0);
+        let mut forces = vec![0.0; 2];
+        light.residual(At { t_s: t, z: &z[..2], rate: &rate[..2] }, &mut forces);
+        let size = mass * acceleration[0].hypot(acceleration[1]);
+        for k in 0..2 {
+            assert!((with[k]).abs() < 1e-12, "velocity is the rate of the position");
+            let inertia = with[2 + k] + forces[k];
+            assert!(inertia.abs() < 1e-3 * size, "{inertia} of {size} at {t}");
+        }
+    }
+}

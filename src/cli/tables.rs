@@ -108,8 +108,13 @@ pub(super) fn engines(comparisons: &[EngineComparison]) -> String {
             let mut values = table(&head.iter().map(String::as_str).collect::<Vec<_>>());
             for row in &c.rows {
                 let mut line = vec![row.engine.as_str().to_owned(), perturbation(row)];
-                line.extend(row.values[k].iter().map(|v| format!("{v:.6e}")));
-                line.push(format!("{:.1e}", row.error[k]));
+                match &row.failure {
+                    Some(reason) => line.push(reason.clone()),
+                    None => {
+                        line.extend(row.values[k].iter().map(|v| format!("{v:.6e}")));
+                        line.push(format!("{:.1e}", row.error[k]));
+                    }
+                }
                 values.add_row(line);
             }
             text += &format!("d {quantity}\n{values}\n\n");

@@ -310,6 +310,10 @@ impl Dae for JournalBearing {
     }
 
     fn change(&self, z: &[f64], dz: &[f64]) -> f64 {
+        // Maxima pass over what is no number, so that is looked for first.
+        if dz.iter().any(|v| !v.is_finite()) {
+            return f64::NAN;
+        }
         let top = self.film_unknowns(z).iter().fold(SMALL_PRESSURE_PA, |a, q| a.max(q.abs()));
         let pressure = self.film_unknowns(dz).iter().fold(0.0f64, |a, q| a.max(q.abs())) / top;
         let clearance = self.setup.diametral_clearance_m / 2.0;

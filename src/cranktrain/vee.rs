@@ -133,6 +133,9 @@ impl VeeEngine {
             let top = bank_rad(name.bank, vee_rad) - throw_rad;
             let zero = *origin.get_or_insert(top);
             let within_turn = (top - zero - last + ANGLE_TOLERANCE_RAD).rem_euclid(TAU) - ANGLE_TOLERANCE_RAD;
+            // Two pistons at top together fire a turn apart.
+            let together = before.is_some() && within_turn < ANGLE_TOLERANCE_RAD;
+            let within_turn = if together { TAU } else { within_turn };
             last += within_turn;
             if last >= WORKING_CYCLE_RAD - ANGLE_TOLERANCE_RAD {
                 let wait_deg = within_turn.to_degrees();
@@ -152,7 +155,7 @@ impl VeeEngine {
         Ok(Self { cylinder, vee_rad, throws, throw_mass_kg: 0.0, rod_spacing_ratio: 0.0 })
     }
 
-    /// Force of each rod of a throw on its pin, in the crankcase frame, with its bank.
+    /// Force of each rod of a throw on its pin, in the crankcase frame, N, with its bank.
     pub fn pin_forces(&self, throw: usize, crank_angle_rad: f64, speed_rad_s: f64) -> Vec<(Bank, [f64; 2])> {
         self.throws[throw]
             .cylinders
@@ -164,13 +167,14 @@ impl VeeEngine {
             .collect()
     }
 
-    /// Centrifugal force of a throw's own unbalance.
+    /// Centrifugal force of a throw's own unbalance, in the crankcase frame, N.
     pub fn unbalance_n(&self, throw: usize, crank_angle_rad: f64, speed_rad_s: f64) -> [f64; 2] {
         let force = self.throw_mass_kg * self.cylinder.crank.throw_m * speed_rad_s * speed_rad_s;
-        turned([force, 0.0], crank_angle_rad + self.throws[throw].angle_rad)
+        let pin_rad = self.throws[throw].angle_rad + self.cylinder.crank.top_dead_centre_rad();
+        turned([force, 0.0], crank_angle_rad + pin_rad)
     }
 
-    /// Loads which a throw puts on the main bearing before and behind it.
+    /// Loads which a throw puts on the main bearing before and behind it, N. The rod of bank A sits nearer to the one before.
     pub fn throw_shares(&self, throw: usize, crank_angle_rad: f64, speed_rad_s: f64) -> [[f64; 2]; 2] {
         let own = self.unbalance_n(throw, crank_angle_rad, speed_rad_s);
         let mut shares = [own.map(|f| f / 2.0); 2];
@@ -277,6 +281,27 @@ mod tests {
             let carried = mains.fold([0.0; 2], |s, f| [s[0] + f[0], s[1] + f[1]]);
             (0..2).for_each(|c| assert!((carried[c] - total[c]).abs() < 1e-7));
         }
+    }
+
+    #[test]
+    fn a_throw_s_unbalance_points_along_its_pin() {
+        let engine = engine();
+        for throw in 0..4 {
+            let own = engine.unbalance_n(throw, 0.7, 100.0);
+            for &(bank, fires) in &engine.throws[throw].cylinders {
+                let crank = engine.cylinder.crank.at(0.7 - fires).crank_rad + bank_rad(bank, engine.vee_rad);
+                let across = own[1] * crank.cos() - own[0] * crank.sin();
+                assert!(across.abs() < 1e-9 * own[0].hypot(own[1]));
+                assert!(own[0] * crank.cos() + own[1] * crank.sin() > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn pistons_that_are_at_top_together_fire_a_turn_apart() {
+        let order = ["A1", "A2"].map(|n| n.parse().unwrap());
+        let twin = VeeEngine::new(cylinder(), 0.0, &[0.0, 0.0], &order).unwrap();
+        assert!((twin.throws[1].cylinders[0].1 - TAU).abs() < 1e-12);
     }
 
     #[test]

@@ -17,7 +17,7 @@ use thiserror::Error;
 
 /// Points of the resulting diagram: one per half degree.
 const POINTS: usize = 1440;
-/// Crank angle within which the pressure difference at exhaust opening falls to 1/e.
+/// Width of the bell curve along which the pressure difference at exhaust opening falls.
 const BLOWDOWN_RAD: f64 = 15.0 * PI / 180.0;
 /// Half of the crank angle of the change-over around gas-exchange top dead centre.
 const CHANGE_OVER_RAD: f64 = 20.0 * PI / 180.0;

@@ -14,7 +14,7 @@
 //! Swift-Stieber (`p >= p_cav`, `r >= 0`, one of them zero) is the complementarity problem `min(d q, r) = 0` with the
 //! diagonal `d`; Newton's method on it is the primal-dual active set method, finite and monotone for M-matrices
 //! (Hintermueller, Ito and Kunisch 2003). The loss is the wall power; by summation by parts over the same faces it equals
-//! dissipation plus squeeze power to rounding.
+//! dissipation plus squeeze power to rounding (with pressure at the edges or in grooves, plus the power of the flow there).
 //!
 //! Deliberately not here: mass conservation in the cavity, roughness, variable viscosity.
 

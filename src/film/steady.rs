@@ -47,6 +47,9 @@ pub fn steady(film: &dyn FilmModel, u: &FilmInput) -> Result<SteadyState, Steady
         let largest = q.iter().fold(0.0f64, |a, q| a.max(q.abs()));
         let change = step.iter().fold(0.0f64, |a, s| a.max(s.abs()));
         q.iter_mut().zip(&step).for_each(|(q, s)| *q -= s);
+        if step.iter().any(|s| !s.is_finite()) {
+            return Err(SteadyError::NotSettled);
+        }
         if change <= 1e-11 * largest {
             return Ok(SteadyState { output: film.output(u, &q), q, iterations });
         }

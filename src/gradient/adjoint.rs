@@ -30,11 +30,11 @@ impl<M: SensitiveDae> GradientEngine<M> for Adjoint {
         &self,
         model: &M,
         at: &Orbit,
-        _: &OrbitOptions,
+        options: &OrbitOptions,
         of: &[Quantity],
         cancel: &Cancel,
     ) -> Result<GradientTable, GradientError> {
-        sweep_until_closed(Backward::new(model, at, of), (0..at.steps()).rev(), at.steps(), cancel)
+        sweep_until_closed(Backward::new(model, at, of), (0..at.steps()).rev(), options, cancel)
     }
 }
 

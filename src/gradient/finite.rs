@@ -10,6 +10,12 @@ const REST: f64 = 1e-7;
 /// Smallest periodicity that rounding lets a cycle reach.
 const FINEST: f64 = 1e-13;
 
+/// Options with which what is left of the start is small against a perturbation, not only against the cycle.
+pub(super) fn tight(options: &OrbitOptions, perturbation: f64) -> OrbitOptions {
+    let tolerance = (REST * perturbation).max(FINEST).min(options.periodicity_tolerance);
+    OrbitOptions { periodicity_tolerance: tolerance, ..*options }
+}
+
 /// Which points a difference uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Difference {
@@ -54,9 +60,14 @@ impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
             closure: 0.0,
             cost: Cost::default(),
         };
-        // What is left of the start must be small against the difference itself, not only against the cycle.
-        let tolerance = (REST * self.perturbation).max(FINEST).min(options.periodicity_tolerance);
-        let options = &OrbitOptions { periodicity_tolerance: tolerance, ..*options };
+        let options = &tight(options, self.perturbation);
+        if at.periodicity > options.periodicity_tolerance && self.difference != Difference::Central {
+            // One-sided differences use the point itself: it must be settled as sharply as its neighbours.
+            let sharp = Orbit { periodicity: 0.0, ..settle(model, options, Some(at), cancel)? };
+            let mut table = self.gradient(model, &sharp, options, of, cancel)?;
+            table.cost += sharp.cost;
+            return Ok(table);
+        }
         let here: Vec<f64> = of.iter().map(|q| at.value(q)).collect();
         for j in 0..p.len() {
             let step = self.perturbation * if p[j] != 0.0 { p[j].abs() } else { 1.0 };

@@ -33,7 +33,7 @@ use thiserror::Error;
 
 /// Memory below this share of its start counts as gone.
 const CLOSED: f64 = 1e-13;
-/// Sweeps over the cycle after which a memory is declared not to fade.
+/// Sweeps over the cycle that are granted at least, however few cycles the settling may take.
 const MOST_SWEEPS: usize = 50;
 
 /// Name of a gradient engine.
@@ -105,9 +105,11 @@ pub enum GradientError {
     /// A step matrix collapsed.
     #[error(transparent)]
     Singular(#[from] Singular),
-    /// The memory of the orbit does not fade: it is not stable.
-    #[error("the sensitivity does not become periodic within {MOST_SWEEPS} sweeps: the orbit is not stable")]
-    NotClosed,
+    /// The memory of the orbit does not fade.
+    #[error(
+        "the sensitivity does not become periodic within {0} sweeps: the orbit is hardly stable; raise orbit.max_cycles"
+    )]
+    NotClosed(usize),
     /// Stopped from outside.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -141,11 +143,12 @@ trait Sweep {
 fn sweep_until_closed(
     mut sweep: impl Sweep,
     order: impl Iterator<Item = usize> + Clone,
-    steps: usize,
+    options: &OrbitOptions,
     cancel: &Cancel,
 ) -> Result<GradientTable, GradientError> {
     let (mut closure, mut taken) = (Closure::new(), 0);
-    for pass in 0..MOST_SWEEPS {
+    let most = options.max_cycles.max(MOST_SWEEPS);
+    for pass in 0..most {
         for n in order.clone() {
             cancel.check()?;
             closure.note(sweep.step(n, pass == 0)?);
@@ -154,14 +157,14 @@ fn sweep_until_closed(
                 let (rows, cost) = sweep.result();
                 return Ok(GradientTable {
                     rows,
-                    sweeps: taken as f64 / steps as f64,
+                    sweeps: taken as f64 / options.steps as f64,
                     closure: closure.left(),
                     cost,
                 });
             }
         }
     }
-    Err(GradientError::NotClosed)
+    Err(GradientError::NotClosed(most))
 }
 
 /// Follows a memory that sweeps over the cycle until it has faded.

@@ -3,6 +3,7 @@
 //! Along a direction `d`, `|Q(p + h d) - Q(p)|` falls like `h` and `|Q(p + h d) - Q(p) - h dQ/dp d|` like `h^2` if, and
 //! only if, the gradient is right. A quantity linear along `d` has no remainder but rounding: it counts as passed.
 
+use super::finite::tight;
 use super::{GradientError, GradientTable};
 use crate::dae::SensitiveDae;
 use crate::orbit::{Orbit, OrbitOptions, Quantity, settle};
@@ -38,6 +39,9 @@ pub fn taylor_table<M: SensitiveDae>(
     cancel: &Cancel,
 ) -> Result<Vec<Vec<TaylorRow>>, GradientError> {
     let p = model.parameters();
+    let smallest = first / (1u64 << count.max(1)) as f64;
+    let options = &tight(options, smallest);
+    let base = settle(model, options, Some(at), cancel)?;
     let d: Vec<f64> = p.iter().zip(direction).map(|(p, d)| p * d).collect();
     let mut tables: Vec<Vec<TaylorRow>> = vec![Vec::new(); of.len()];
     for k in 0..count {
@@ -45,7 +49,7 @@ pub fn taylor_table<M: SensitiveDae>(
         let shifted: Vec<f64> = p.iter().zip(&d).map(|(p, d)| p + step * d).collect();
         let orbit = settle(&model.with_parameters(&shifted)?, options, Some(at), cancel)?;
         for ((table, quantity), row) in tables.iter_mut().zip(of).zip(&gradient.rows) {
-            let here = at.value(quantity);
+            let here = base.value(quantity);
             let change = orbit.value(quantity) - here;
             let slope: f64 = row.iter().zip(&d).map(|(g, d)| g * d).sum();
             let remainder = (change - step * slope).abs() / here.abs();

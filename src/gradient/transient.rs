@@ -28,11 +28,11 @@ impl<M: SensitiveDae> GradientEngine<M> for Transient {
         &self,
         model: &M,
         at: &Orbit,
-        _: &OrbitOptions,
+        options: &OrbitOptions,
         of: &[Quantity],
         cancel: &Cancel,
     ) -> Result<GradientTable, GradientError> {
-        sweep_until_closed(Forward::new(model, at, of), 0..at.steps(), at.steps(), cancel)
+        sweep_until_closed(Forward::new(model, at, of), 0..at.steps(), options, cancel)
     }
 }
 

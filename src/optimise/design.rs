@@ -1,8 +1,8 @@
 //! A constrained problem made of periodic models: every case is one bearing at one operating point.
 //!
 //! The objective is a weighted sum of quantities, one row of constraints belongs to each limit. Evaluated designs are
-//! remembered by the bits of their parameters, so a point is never simulated twice; the cycles of the latest designs are kept
-//! to start the next ones and to be differentiated. Cases run in parallel; their results do not depend on how.
+//! remembered by the bits of their parameters; the cycles of the latest designs are kept to start the next ones and to be
+//! differentiated. Cases run in parallel; their results do not depend on how.
 
 use super::{ConstrainedProblem, EvaluationError, Slopes, Values};
 use crate::dae::SensitiveDae;

@@ -98,10 +98,9 @@ pub fn minimise<P: ConstrainedProblem + ?Sized>(
     let mut scaled = Scaled::new(problem, start);
     let s = scaled.to_scaled(start);
     if let Ok(values) = scaled.values(&s) {
-        scaled.objective_scale = values.objective.abs().max(f64::MIN_POSITIVE);
-        if values.objective.abs() < 1e-8 {
-            scaled.objective_scale = 1.0;
-        }
+        // An objective that happens to vanish at the start has no size to scale by.
+        let size = values.objective.abs();
+        scaled.objective_scale = if size < 1e-8 { 1.0 } else { size };
     }
     let scale = scaled.objective_scale;
     let result = Executor::new(Operator { scaled }, Sqp::new(options))
@@ -170,7 +169,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
         let Some(qp) = self.sub_problem(problem, &now, &state.hessian, &now.values) else {
             return Ok((self.give_up(state), None));
         };
-        state.kkt = kkt(&now, &state.hessian, &qp);
+        state.kkt = kkt(&now, &qp);
         state.multipliers = qp.multipliers.clone();
         report(problem, &mut state, &now);
         let converged = state.kkt <= self.options.tolerance;
@@ -192,7 +191,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
             .chain(&qp.multipliers.equalities)
             .fold(0.0f64, |a, m| a.max(m.abs()));
         state.penalty = state.penalty.max(1.5 * largest).max(1e-3);
-        match self.search(problem, &mut state, &now, &qp) {
+        match self.accept(problem, &mut state, &now, &qp) {
             Err(EvaluationError::Cancelled) => Ok((state.end(Outcome::Cancelled), None)),
             Err(EvaluationError::Failed(_)) if !state.fresh_hessian => {
                 // The curvature may be stale: try once more along the steepest descent.
@@ -201,18 +200,14 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
                 Ok((state, None))
             }
             Err(EvaluationError::Failed(_)) => Ok((self.give_up(state), None)),
-            Ok((x, values)) => match differentiate(problem, &x) {
-                Err(e) => Ok((refuse(state, e, Outcome::NoProgress), None)),
-                Ok(slopes) => {
-                    let next = Iterate { x, values, slopes };
-                    update_hessian(&mut state, &now, &next);
-                    state.last_step = next.x.iter().zip(&now.x).fold(0.0, |a, (b, c)| a.max((b - c).abs()));
-                    state.stalled = if state.last_step < STILL { state.stalled + 1 } else { 0 };
-                    state.iterate = Some(next);
-                    state.remember(self.options.tolerance.max(FEASIBLE));
-                    Ok((state, None))
-                }
-            },
+            Ok(next) => {
+                update_hessian(&mut state, &now, &next);
+                state.last_step = next.x.iter().zip(&now.x).fold(0.0, |a, (b, c)| a.max((b - c).abs()));
+                state.stalled = if state.last_step < STILL { state.stalled + 1 } else { 0 };
+                state.iterate = Some(next);
+                state.remember(self.options.tolerance.max(FEASIBLE));
+                Ok((state, None))
+            }
         }
     }
 
@@ -242,14 +237,35 @@ impl Sqp {
         Qp { hessian, values, slopes: &now.slopes, lower: &lower, upper: &upper }.solve()
     }
 
-    /// Searches along the step; returns an accepted point, or `Failed` if there is none.
+    /// A point that improves the merit and has a gradient: a point without one counts as refused, like one without values.
+    fn accept<P: ConstrainedProblem + ?Sized>(
+        &self,
+        problem: &mut Problems<'_, P>,
+        state: &mut SqpState,
+        now: &Iterate,
+        qp: &QpSolution,
+    ) -> Result<Iterate, EvaluationError> {
+        let mut longest = 1.0;
+        loop {
+            let (x, values, share) = self.search(problem, state, now, qp, longest)?;
+            match differentiate(problem, &x) {
+                Ok(slopes) => return Ok(Iterate { x, values, slopes }),
+                Err(EvaluationError::Cancelled) => return Err(EvaluationError::Cancelled),
+                Err(EvaluationError::Failed(reason)) => state.failures.push(reason),
+            }
+            longest = 0.5 * share;
+        }
+    }
+
+    /// Searches along the step, no further than `longest` of it; returns an accepted point with its share of the step.
     fn search<P: ConstrainedProblem + ?Sized>(
         &self,
         problem: &mut Problems<'_, P>,
         state: &mut SqpState,
         now: &Iterate,
         qp: &QpSolution,
-    ) -> Result<(Vec<f64>, Values), EvaluationError> {
+        longest: f64,
+    ) -> Result<(Vec<f64>, Values, f64), EvaluationError> {
         let mu = state.penalty;
         let merit = |v: &Values| v.objective + mu * v.total_violation();
         let here = merit(&now.values);
@@ -258,7 +274,7 @@ impl Sqp {
         let enough = |v: &Values, share: f64| {
             merit(v) <= here + ARMIJO * share * slope.min(0.0) + ROUNDING * here.abs()
         };
-        let mut share = 1.0;
+        let mut share = longest;
         while share >= SHORTEST {
             let x = moved(problem, &now.x, &qp.step, share);
             match evaluate(problem, &x) {
@@ -267,13 +283,13 @@ impl Sqp {
                     state.failures.push(reason);
                     share *= 0.5;
                 }
-                Ok(values) if enough(&values, share) => return Ok((x, values)),
+                Ok(values) if enough(&values, share) => return Ok((x, values, share)),
                 Ok(values) => {
                     let curved = share == 1.0 && values.total_violation() > now.values.total_violation();
                     if curved
                         && let Some(found) = self.corrected(problem, state, now, qp, &values, &enough)?
                     {
-                        return Ok(found);
+                        return Ok((found.0, found.1, share));
                     }
                     // Minimum of the parabola through both merits and the slope.
                     let rise = merit(&values) - here - share * slope;
@@ -318,7 +334,7 @@ impl Sqp {
             .incumbent
             .as_ref()
             .map_or((f64::INFINITY, f64::INFINITY), |b| (b.kkt, b.values.violation()));
-        let close = kkt <= CLOSE.max(1e3 * self.options.tolerance) && violation <= CLOSE;
+        let close = kkt <= CLOSE.max(10.0 * self.options.tolerance) && violation <= CLOSE;
         state.end(if close { Outcome::AlmostConverged } else { Outcome::NoProgress })
     }
 }
@@ -413,21 +429,17 @@ fn lagrangian(slopes: &Slopes, multipliers: &Multipliers) -> DVector<f64> {
     g
 }
 
-/// Largest of stationarity, complementarity and violation at a point, with the multipliers of its sub-problem.
-///
-/// A bound's multiplier only counts if the point stands on the bound; otherwise it belongs to the step.
-fn kkt(now: &Iterate, hessian: &DMatrix<f64>, qp: &QpSolution) -> f64 {
-    // Stationarity of the sub-problem: grad L + bounds = -B d.
-    let curvature = hessian * DVector::from_column_slice(&qp.step);
-    let stationarity = curvature.amax();
-    let complementarity = now
-        .values
-        .inequalities
-        .iter()
-        .zip(&qp.multipliers.inequalities)
-        .fold(0.0f64, |a, (c, m)| a.max((c * m).abs()));
-    let bounds = (qp.multipliers.lower.iter().zip(&qp.step))
-        .chain(qp.multipliers.upper.iter().zip(&qp.step))
+/// Largest of stationarity, complementarity and violation at a point, with the multipliers of its sub-problem. A bound's
+/// multiplier counts against the step that is left: it must vanish unless the point stands on the bound.
+fn kkt(now: &Iterate, qp: &QpSolution) -> f64 {
+    let m = &qp.multipliers;
+    let gradient = lagrangian(&now.slopes, m);
+    let stationarity =
+        (0..gradient.len()).fold(0.0f64, |a, j| a.max((gradient[j] - m.lower[j] + m.upper[j]).abs()));
+    let complementarity =
+        now.values.inequalities.iter().zip(&m.inequalities).fold(0.0f64, |a, (c, m)| a.max((c * m).abs()));
+    let bounds = (m.lower.iter().zip(&qp.step))
+        .chain(m.upper.iter().zip(&qp.step))
         .fold(0.0f64, |a, (m, d)| a.max((m * d).abs()));
     stationarity.max(complementarity).max(bounds).max(now.values.violation())
 }
@@ -499,6 +511,52 @@ mod tests {
             assert!(end.kkt <= 1e-6 && end.multipliers.inequalities[0] > 0.0);
             assert!(end.gradients <= end.evaluations);
         }
+    }
+
+    #[test]
+    fn equality_constraints_are_met_and_have_multipliers() {
+        /// Hock-Schittkowski 6 with a bound: (1 - x)^2 subject to 10 (y - x^2) = 0.
+        struct Curve;
+        impl ConstrainedProblem for Curve {
+            fn bounds(&self) -> (Vec<f64>, Vec<f64>) {
+                (vec![f64::NEG_INFINITY, f64::NEG_INFINITY], vec![0.8, f64::INFINITY])
+            }
+            fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
+                let g = 10.0 * (x[1] - x[0] * x[0]);
+                Ok(Values { objective: (1.0 - x[0]).powi(2), inequalities: vec![], equalities: vec![g] })
+            }
+            fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
+                let objective = vec![-2.0 * (1.0 - x[0]), 0.0];
+                Ok(Slopes { objective, inequalities: vec![], equalities: vec![vec![-20.0 * x[0], 10.0]] })
+            }
+        }
+        let end = minimise(&Curve, &[-1.2, 1.0], SqpOptions::default()).unwrap();
+        assert_eq!(end.outcome, Outcome::Converged);
+        assert!((end.x[0] - 0.8).abs() < 1e-6 && (end.x[1] - 0.64).abs() < 1e-6);
+        // At the bound the slope of the objective, -0.4, is carried by the bound alone: the equality costs nothing.
+        assert!(end.multipliers.equalities[0].abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_point_without_gradient_is_refused_like_one_without_values() {
+        struct Blind;
+        impl ConstrainedProblem for Blind {
+            fn bounds(&self) -> (Vec<f64>, Vec<f64>) {
+                (vec![-2.0], vec![2.0])
+            }
+            fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
+                Ok(Values { objective: (x[0] - 0.3).powi(4) + 1.0, inequalities: vec![], equalities: vec![] })
+            }
+            fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
+                if x[0] < 0.25 && x[0] > -1.9 {
+                    return Err(EvaluationError::Failed("no gradient here".into()));
+                }
+                let objective = vec![4.0 * (x[0] - 0.3).powi(3)];
+                Ok(Slopes { objective, inequalities: vec![], equalities: vec![] })
+            }
+        }
+        let end = minimise(&Blind, &[1.9], SqpOptions { tolerance: 1e-4, ..Default::default() }).unwrap();
+        assert_eq!(end.outcome, Outcome::Converged, "{:?}", end.failures);
     }
 
     #[test]

@@ -40,12 +40,16 @@ pub(super) fn machine_of(
     };
     let cylinder = machine::cylinder(machine, pressure, base, faults, fingerprint);
     last_main(file.bearings.value(), machine, faults);
-    let vee = if needs_vee || !machine.firing_order.is_absent() {
-        machine::vee(machine, cylinder.as_ref(), faults)
-    } else {
-        None
-    };
-    (cylinder, vee)
+    if needs_vee || !machine.firing_order.is_absent() {
+        let vee = machine::vee(machine, cylinder.as_ref(), faults);
+        return (cylinder, vee);
+    }
+    let why = "there is no main bearing and no firing_order";
+    faults.unused(&machine.vee_angle, "machine.vee_angle", why);
+    faults.unused(&machine.throw_angles, "machine.throw_angles", why);
+    faults.unused(&machine.throw_mass, "machine.throw_mass", why);
+    faults.unused(&machine.rod_spacing_ratio, "machine.rod_spacing_ratio", why);
+    (cylinder, None)
 }
 
 /// Main bearings are counted from 0 to the number of throws.
@@ -120,7 +124,12 @@ fn bearing_plan(
     faults.range(Some(mass), &at("journal_mass"), |v| v >= 0.0, "at or above zero");
     let count = faults.or(&mut b.count, &at("count"), 1);
     faults.range(Some(f64::from(count)), &at("count"), |v| v >= 1.0, "at least 1");
-    let kind = faults.need(&b.kind, &at("kind"))?;
+    let Some(kind) = faults.need(&b.kind, &at("kind")) else {
+        faults.get(&b.load, &at("load"));
+        faults.get(&b.cycle, &at("cycle"));
+        faults.get(&b.main_bearing, &at("main_bearing"));
+        return None;
+    };
     if kind != BearingKind::Main {
         faults.unused(&b.main_bearing, &at("main_bearing"), "the bearing is no main bearing");
     }

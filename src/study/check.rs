@@ -14,6 +14,11 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
+/// Cycles that are held in memory at a time, per bearing and operating point.
+const KEPT_CYCLES: f64 = 5.0;
+/// Memory a study may ask for.
+const MOST_BYTES: f64 = 8e9;
+
 /// A study that can be run.
 #[derive(Debug, Clone)]
 pub struct Study {
@@ -118,6 +123,21 @@ fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Optio
     let gradient = sections::gradient(&mut file, faults);
     let optimiser = sections::optimiser(&mut file, faults);
     sections::assumptions(&mut file, faults);
+    if let (Some(film), Some(orbit), Some(plans), Some(points)) = (&film, &orbit, &plans, &points) {
+        let cells = film.cells_around * film.cells_across_half;
+        let bytes =
+            cells as f64 * orbit.steps as f64 * 8.0 * KEPT_CYCLES * (plans.len() * points.len()) as f64;
+        if bytes > MOST_BYTES {
+            let needed = crate::report::short(bytes * 1e-9);
+            let most = crate::report::short(MOST_BYTES * 1e-9);
+            faults.add(
+                "film",
+                format!(
+                    "cells times steps, bearings and operating points need {needed} GB; at most {most} GB"
+                ),
+            );
+        }
+    }
     if faults.any() {
         return None;
     }

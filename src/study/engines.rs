@@ -2,6 +2,8 @@
 
 use super::build::plan;
 use super::check::Study;
+use super::plans::ParameterPlan;
+use super::vocabulary::QuantityName;
 use crate::dae::Dae;
 use crate::gradient::{EngineName, GradientTable, engine};
 use crate::optimise::EvaluationError;
@@ -38,6 +40,8 @@ pub struct EngineRow {
     pub cost: Cost,
     /// Wall time over the wall time of the simulation at the point.
     pub time_ratio: f64,
+    /// Why there are no values, if so.
+    pub failure: Option<String>,
 }
 
 /// All engines on one bearing at one operating point.
@@ -96,20 +100,30 @@ pub fn compare_engines(
             let steps: Vec<Option<f64>> =
                 if finite { sweep.0.iter().map(|e| Some(*e)).collect() } else { vec![None] };
             for perturbation in steps {
-                let (table, time_ratio) = compute(name, perturbation.unwrap_or(0.0))?;
-                let shown = |(k, row): (usize, &Vec<f64>)| -> Vec<f64> {
-                    let (_, scale) = plan.quantities[c][k].unit();
-                    row.iter().zip(&parameters).map(|(g, p)| g / scale * p.variable.scale.0).collect()
+                let row = match compute(name, perturbation.unwrap_or(0.0)) {
+                    Ok((table, time_ratio)) => EngineRow {
+                        engine: name,
+                        perturbation,
+                        values: shown(&table, &plan.quantities[c], &parameters),
+                        error: differences(&table, &reference, model.parameters()),
+                        sweeps: table.sweeps,
+                        cost: table.cost,
+                        time_ratio,
+                        failure: None,
+                    },
+                    Err(EvaluationError::Cancelled) => return Err(EvaluationError::Cancelled),
+                    Err(EvaluationError::Failed(reason)) => EngineRow {
+                        engine: name,
+                        perturbation,
+                        values: Vec::new(),
+                        error: Vec::new(),
+                        sweeps: 0.0,
+                        cost: Cost::default(),
+                        time_ratio: 0.0,
+                        failure: Some(reason),
+                    },
                 };
-                rows.push(EngineRow {
-                    engine: name,
-                    perturbation,
-                    values: table.rows.iter().enumerate().map(shown).collect(),
-                    error: differences(&table, &reference, model.parameters()),
-                    sweeps: table.sweeps,
-                    cost: table.cost,
-                    time_ratio,
-                });
+                rows.push(row);
             }
         }
         let units = plan.quantities[c].iter().map(|q| {
@@ -128,6 +142,15 @@ pub fn compare_engines(
         });
     }
     Ok(comparisons)
+}
+
+/// Derivatives in the units of reports.
+fn shown(table: &GradientTable, quantities: &[QuantityName], parameters: &[&ParameterPlan]) -> Vec<Vec<f64>> {
+    let row = |(row, quantity): (&Vec<f64>, &QuantityName)| {
+        let (_, scale) = quantity.unit();
+        row.iter().zip(parameters).map(|(g, p)| g / scale * p.variable.scale.0).collect()
+    };
+    table.rows.iter().zip(quantities).map(row).collect()
 }
 
 /// Largest difference of elasticities in each row, relative to the row's largest elasticity.

@@ -45,7 +45,7 @@ impl Faults {
 
     /// What stands in the document at a path.
     pub fn raw(&self, path: &str) -> Option<&Value> {
-        self.raw.pointer(&format!("/{}", path.replace('.', "/").replace('[', "/").replace(']', "")))
+        self.raw.pointer(&format!("/{}", path.replace(['.', '['], "/").replace(']', "")))
     }
 
     /// Notes a mistake.

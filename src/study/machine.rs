@@ -141,7 +141,8 @@ fn computed(
     faults.range(heat, &at("heat_release"), |v| v >= 0.0, "at or above zero");
     let start = faults.need(&file.combustion_start, &at("combustion_start")).map(|v| v.si());
     let duration = faults.need(&file.combustion_duration, &at("combustion_duration")).map(|v| v.si());
-    faults.range(duration, &at("combustion_duration"), |v| v > 0.0, "above zero");
+    let shortest = 5f64.to_radians();
+    faults.range(duration, &at("combustion_duration"), |v| v >= shortest, "at least 5 deg");
     let shape = faults.or(&mut file.combustion_shape, &at("combustion_shape"), 1.0);
     faults.range(Some(shape), &at("combustion_shape"), |v| (0.0..=10.0).contains(&v), "between 0 and 10");
     let closes = faults.or(&mut file.inlet_closes, &at("inlet_closes"), zero("-150 deg")).si();
@@ -158,13 +159,17 @@ fn computed(
         |v| (1.0..3.6).contains(&v),
         "between 57 deg and 206 deg",
     );
-    let exhaust = faults.or(&mut file.exhaust_pressure, &at("exhaust_pressure"), charge.clone()?).si();
+    let exhaust = match &charge {
+        Some(charge) => faults.or(&mut file.exhaust_pressure, &at("exhaust_pressure"), charge.clone()).si(),
+        None => faults.get(&file.exhaust_pressure, &at("exhaust_pressure")).map_or(1.0, |p| p.si()),
+    };
     faults.range(Some(exhaust), &at("exhaust_pressure"), |v| v > 0.0, "above zero");
     let wiebe = Wiebe { start_rad: start?, duration_rad: duration?, shape };
-    let burns = wiebe.start_rad > closes && wiebe.start_rad < opens;
-    if !burns {
-        faults
-            .add(&at("combustion_start"), "must lie between closing of the inlet and opening of the exhaust");
+    if wiebe.start_rad <= closes || wiebe.start_rad + wiebe.duration_rad > opens {
+        faults.add(
+            &at("combustion_start"),
+            "combustion must lie between closing of the inlet and opening of the exhaust",
+        );
     }
     let cycle = WorkingCycle {
         bore_m: bore?,

@@ -43,13 +43,6 @@ pub fn run(study: &Study, context: RunContext<'_>) -> Findings {
         Ok(found) => found,
         Err(reason) => return failed(study, reason, began),
     };
-    // A cancelled run still reports what is known: what follows must not be cancelled again.
-    let patient = Cancel::default();
-    let context = if minimum.outcome == Outcome::Cancelled {
-        RunContext { cancel: &patient, ..context }
-    } else {
-        context
-    };
     stage("checking the design");
     let known = minimum.values.as_ref().and_then(|_| revisit(study, &plan, &minimum, context));
     report(study, &plan, &minimum, known, context, began)
@@ -61,15 +54,13 @@ struct Known {
     optimum: Arc<Evaluated>,
 }
 
+/// The cycles at both designs, from the search's memory where it still holds them. A run that was cancelled simulates what is
+/// missing all the same: a report without its design would be worth nothing.
 fn revisit(study: &Study, search: &Plan, minimum: &Minimum, context: RunContext<'_>) -> Option<Known> {
-    if !context.cancel.is_cancelled() && minimum.outcome != Outcome::Cancelled {
-        let optimum = search.problem.evaluated(&minimum.x).ok()?;
-        return Some(Known { start: search.problem.evaluated(&search.start).ok(), optimum });
-    }
-    // The search holds a flag that is up; a plan of its own simulates the two designs that are reported.
-    let fresh = plan(study, study.engine, context).ok()?;
-    let optimum = fresh.problem.evaluated(&minimum.x).ok()?;
-    Some(Known { start: fresh.problem.evaluated(&search.start).ok(), optimum })
+    let patient = Cancel::default();
+    let fresh = plan(study, study.engine, RunContext { cancel: &patient, ..context }).ok()?;
+    let at = |x: &[f64]| search.problem.evaluated(x).or_else(|_| fresh.problem.evaluated(x)).ok();
+    Some(Known { optimum: at(&minimum.x)?, start: at(&search.start) })
 }
 
 fn report(
@@ -384,7 +375,8 @@ fn assumptions(study: &Study) -> Vec<Assumption> {
 fn methods(study: &Study) -> Vec<String> {
     let mut list = vec![match study.film.model {
         FilmModelName::Reynolds => {
-            "Film: Reynolds (1886) equation by finite volumes; rupture after Swift (1932) and Stieber (1933)"
+            "Film: Reynolds (1886) equation by finite volumes; rupture after Swift (1932) and Stieber (1933); shear all around, \
+             in the ruptured part too"
         }
         FilmModelName::Mobility => "Film: short bearing, Ocvirk (1952), Booker's mobility method (1965)",
     }];

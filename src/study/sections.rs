@@ -31,13 +31,15 @@ pub(super) fn oil(file: &mut StudyFile, faults: &mut Faults) -> Option<(Viscosit
         |v| (0.0..=150.0).contains(&v),
         "between 0 K and 150 K",
     );
-    let viscosity = if let Some(eta) = faults.get(&oil.dynamic_viscosity, "oil.dynamic_viscosity") {
+    let viscosity = if !oil.dynamic_viscosity.is_absent() {
+        let eta = faults.get(&oil.dynamic_viscosity, "oil.dynamic_viscosity");
         let why = "dynamic_viscosity is given";
         faults.unused(&oil.kinematic_viscosity_40c, "oil.kinematic_viscosity_40c", why);
         faults.unused(&oil.kinematic_viscosity_100c, "oil.kinematic_viscosity_100c", why);
         faults.unused(&oil.density_15c, "oil.density_15c", why);
-        faults.range(Some(eta.si()), "oil.dynamic_viscosity", |v| v > 0.0, "above zero");
-        Some(Viscosity::Constant { viscosity_pa_s: eta.si() })
+        let eta = eta.map(|eta| eta.si());
+        faults.range(eta, "oil.dynamic_viscosity", |v| v > 0.0, "above zero");
+        eta.map(|viscosity_pa_s| Viscosity::Constant { viscosity_pa_s })
     } else {
         let nu_40 =
             faults.need(&oil.kinematic_viscosity_40c, "oil.kinematic_viscosity_40c").map(|v| v.si() * 1e6);
@@ -155,9 +157,14 @@ pub(super) fn points(file: &mut StudyFile, faults: &mut Faults) -> Option<Vec<Op
         let speed = faults.need(&p.speed, &at("speed")).map(|v| v.si());
         let weight = faults.or(&mut p.weight, &at("weight"), 1.0);
         let load_factor = faults.or(&mut p.load_factor, &at("load_factor"), 1.0);
-        faults.range(speed, &at("speed"), |v| v > 0.0, "above zero");
-        faults.range(Some(weight), &at("weight"), |v| v > 0.0, "above zero");
-        faults.range(Some(load_factor), &at("load_factor"), |v| v > 0.0, "above zero");
+        faults.range(speed, &at("speed"), |v| v > 0.0 && v <= 2e4, "above zero and at most 190000 rpm");
+        faults.range(Some(weight), &at("weight"), |v| v > 0.0 && v <= 1e6, "above zero and at most 1e6");
+        faults.range(
+            Some(load_factor),
+            &at("load_factor"),
+            |v| v > 0.0 && v <= 100.0,
+            "above zero and at most 100",
+        );
         if let (Some(name), Some(speed_rad_s)) = (name, speed) {
             if points.iter().any(|p: &OperatingPoint| p.name == name) {
                 faults.add(&at("name"), format!("the name \"{name}\" stands twice"));
@@ -197,7 +204,12 @@ pub(super) fn optimiser(file: &mut StudyFile, faults: &mut Faults) -> Option<(Sq
     };
     let sharpness = faults.or(&mut o.aggregate_sharpness, &at("aggregate_sharpness"), 200.0);
     faults.range(Some(options.tolerance), &at("tolerance"), |v| v > 0.0 && v < 1.0, "above 0 and below 1");
-    faults.range(Some(options.max_iterations as f64), &at("max_iterations"), |v| v >= 1.0, "at least 1");
+    faults.range(
+        Some(options.max_iterations as f64),
+        &at("max_iterations"),
+        |v| (1.0..=100_000.0).contains(&v),
+        "between 1 and 100000",
+    );
     faults.range(
         Some(options.step_limit),
         &at("step_limit"),

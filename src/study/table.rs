@@ -5,10 +5,12 @@ use super::faults::{Faults, join};
 use super::given::Unknown;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Component, Path};
 
 /// Largest table that is read.
 const MOST_ROWS: usize = 100_000;
+/// Largest CSV file that is read.
+const MOST_FILE_BYTES: u64 = 32_000_000;
 /// Bad rows that are named one by one.
 const NAMED_ROWS: usize = 5;
 /// Widest hole in a periodic table, degrees: a spline across more would be invented.
@@ -92,6 +94,14 @@ impl Table {
 
 fn read_csv(file: &str, base: Option<&Path>) -> Result<Table, String> {
     let base = base.ok_or("files cannot be read here; put columns and rows into the study")?;
+    let inside = Path::new(file).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    if !inside {
+        return Err(format!("'{file}' must lie in the folder of the study or below it"));
+    }
+    let size = std::fs::metadata(base.join(file)).map(|m| if m.is_file() { m.len() } else { u64::MAX });
+    if size.is_ok_and(|bytes| bytes > MOST_FILE_BYTES) {
+        return Err(format!("'{file}' is no file, or larger than 32 MB"));
+    }
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
