@@ -8,6 +8,11 @@ use std::marker::PhantomData;
 use std::str::FromStr;
 use thiserror::Error;
 
+/// A number without the noise of unit conversion: eleven digits.
+pub fn tidy(value: f64) -> f64 {
+    format!("{value:.10e}").parse().unwrap_or(value)
+}
+
 /// A unit: name, size in SI units, and offset in SI units (temperatures).
 pub type Unit = (&'static str, f64, f64);
 

@@ -131,35 +131,41 @@ fn gradient_prints_the_engines_side_by_side() {
     assert_eq!(json[0]["rows"][0]["engine"], "ADJ");
 }
 
+/// Starts a run, interrupts it after a while, and returns its report.
+#[cfg(unix)]
+fn interrupted(file: &std::path::Path, out: &std::path::Path, after: Duration) -> serde_json::Value {
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("stribeck"))
+        .arg("run")
+        .arg(file)
+        .arg("--out")
+        .arg(out)
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(after);
+    assert_eq!(child.try_wait().unwrap(), None, "the run takes longer than {after:?}");
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(out.join("report.html").exists() && out.join("orbit.csv").exists());
+    serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap()
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_writes_what_is_known() {
     let folder = tempfile::tempdir().unwrap();
     let (file, out) = (study(&folder, &[]), folder.path().join("answer"));
-    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("stribeck"))
-        .arg("run")
-        .arg(&file)
-        .arg("--out")
-        .arg(&out)
-        .stdout(std::process::Stdio::null())
-        .stderr(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
-    // The folder is made before the first simulation; the start design is simulated within a few seconds.
-    while !out.exists() {
-        std::thread::sleep(Duration::from_millis(20));
+    // How long the start design takes depends on the machine: wait longer until it is among what is known.
+    for seconds in [2, 4, 8, 16, 32] {
+        let report = interrupted(&file, &out, Duration::from_secs(seconds));
+        assert_eq!(report["outcome"]["status"], "cancelled");
+        assert_eq!(report["design"].as_array().unwrap().len(), 4);
+        if report["objective"]["optimum"]["total_w"].as_f64().is_some_and(|w| w > 0.0) {
+            return;
+        }
+        assert!(report["history"].as_array().unwrap().is_empty(), "an accepted design is reported");
     }
-    std::thread::sleep(Duration::from_secs(3));
-    assert_eq!(child.try_wait().unwrap(), None, "the run takes longer than this");
-    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(kill.success());
-    assert_eq!(child.wait().unwrap().code(), Some(130));
-    let report: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap();
-    assert_eq!(report["outcome"]["status"], "cancelled");
-    assert!(
-        report["objective"]["optimum"]["total_w"].as_f64().unwrap() > 0.0,
-        "the best design so far is there"
-    );
-    assert!(out.join("report.html").exists() && out.join("orbit.csv").exists());
+    panic!("the best design so far is never reported");
 }

@@ -106,7 +106,8 @@ pub struct VeeEngine {
     pub throws: Vec<Throw>,
     /// Unbalanced mass of one throw (pin and webs less counterweights) at the crank radius, kg.
     pub throw_mass_kg: f64,
-    /// Distance of the two rods on one pin over the distance of neighbouring main bearings.
+    /// Distance of the two rods on one pin over the distance of neighbouring main bearings; the rod of bank A sits nearer to
+    /// the free end.
     pub rod_spacing_ratio: f64,
 }
 

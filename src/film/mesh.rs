@@ -67,10 +67,4 @@ impl Mesh {
     pub fn low_edge(&self) -> bool {
         self.axial == Axial::Full
     }
-
-    /// Axial position of the centre of cells `j`, as a share of the width from the mid-plane.
-    pub fn z_share(&self, j: usize) -> f64 {
-        let offset = if self.low_edge() { -0.5 } else { 0.0 };
-        offset + (j as f64 + 0.5) * self.cell_share()
-    }
 }

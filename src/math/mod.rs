@@ -12,3 +12,4 @@ pub use band::{CyclicBand, Singular, Stencil};
 pub use bordered::Bordered;
 pub use power_mean::PowerMean;
 pub use spline::{PeriodicSpline, SplineError};
+pub(crate) use vector::dot;

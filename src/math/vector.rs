@@ -8,7 +8,7 @@ pub(super) fn axpy(y: &mut [f64], a: f64, x: &[f64]) {
 }
 
 /// `a . b` in four partial sums, so that the additions do not wait for each other.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
     let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(a, b)| a * b).sum();
     let mut sums = [0.0; 4];

@@ -15,6 +15,8 @@ mod outcome;
 mod problem;
 mod qp;
 mod sqp;
+#[cfg(test)]
+mod sqp_tests;
 mod state;
 
 pub use design::{Case, DesignProblem, Evaluated, Limit, Sense};

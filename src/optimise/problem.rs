@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// Objective and constraint values at a point.
+/// Objective and constraint values at a point. Constraints should be scaled to order one: one tolerance judges them all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Values {
     /// `f`.

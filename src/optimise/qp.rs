@@ -8,6 +8,7 @@
 //! with `penalty * sum t` in the objective. It always has a solution.
 
 use super::{Multipliers, Slopes, Values};
+use crate::math::dot;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use nalgebra::DMatrix;
@@ -163,7 +164,7 @@ impl Qp<'_> {
 
     /// Largest violation of the linearised constraints after a step.
     pub fn missed(&self, step: &[f64]) -> f64 {
-        let after = |row: &[f64], value: f64| value + row.iter().zip(step).map(|(a, d)| a * d).sum::<f64>();
+        let after = |row: &[f64], value: f64| value + dot(row, step);
         let inequalities = self.slopes.inequalities.iter().zip(&self.values.inequalities);
         let equalities = self.slopes.equalities.iter().zip(&self.values.equalities);
         let above = inequalities.fold(0.0f64, |a, (row, v)| a.max(after(row, *v)));

@@ -12,7 +12,7 @@ const CANCEL_EVERY: usize = 16;
 /// How a cycle is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrbitOptions {
-    /// Steps per period.
+    /// Steps per period, at least 3.
     pub steps: usize,
     /// Difference formula.
     pub scheme: Scheme,

@@ -8,7 +8,7 @@ use super::vocabulary::{QuantityName, Variable};
 use crate::cranktrain::BearingParameter;
 use crate::optimise::Sense;
 use crate::report::short;
-use crate::units::{Length, Pressure, Temperature, VolumeFlow};
+use crate::units::{Length, Pressure, Temperature, VolumeFlow, tidy};
 
 /// Design parameters with their box.
 pub(super) fn parameters(
@@ -96,7 +96,7 @@ fn box_of(
         );
     }
     if p.start.is_absent() {
-        p.start = Given::Value(QuantityText(format!("{} {unit}", rounded(variable.shown(start)))));
+        p.start = Given::Value(QuantityText(format!("{} {unit}", tidy(variable.shown(start)))));
     }
     Some((lower, upper, start))
 }
@@ -131,11 +131,6 @@ fn base_value(bearing: &BearingPlan, variable: Variable) -> Option<f64> {
         BearingParameter::DiametralClearance => Some(bearing.diametral_clearance_m),
         BearingParameter::InletTemperature => None,
     }
-}
-
-/// A number without the noise of unit conversion.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.9e}").parse().unwrap_or(value)
 }
 
 fn si(variable: Variable, text: &str) -> Result<f64, String> {

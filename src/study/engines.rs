@@ -1,12 +1,14 @@
 //! The five gradient engines side by side on a study's start design.
 
-use super::build::plan;
+use super::build::{Plan, plan};
 use super::check::Study;
 use super::plans::ParameterPlan;
 use super::vocabulary::QuantityName;
+use crate::cranktrain::JournalBearing;
 use crate::dae::Dae;
 use crate::gradient::{EngineName, GradientTable, engine};
 use crate::optimise::EvaluationError;
+use crate::orbit::Orbit;
 use crate::run::{Cost, Event, RunContext};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -68,80 +70,109 @@ pub fn compare_engines(
     sweep: &Sweep,
     context: RunContext<'_>,
 ) -> Result<Vec<EngineComparison>, EvaluationError> {
-    let failed = |e: String| EvaluationError::Failed(e);
-    let plan = plan(study, EngineName::Adj, context).map_err(|e| failed(e.to_string()))?;
+    let plan = plan(study, EngineName::Adj, context).map_err(|e| EvaluationError::Failed(e.to_string()))?;
     let began = Instant::now();
     context.progress.tell(&Event::Stage { name: "simulating".to_owned() });
     let at = plan.problem.evaluated(&plan.start)?;
     let simulation_s = began.elapsed().as_secs_f64() / plan.cases.len() as f64;
-    let mut comparisons = Vec::new();
-    for (c, label) in plan.cases.iter().enumerate() {
-        let case = &plan.problem.cases()[c];
-        let model = plan.problem.model(c, &plan.start)?;
-        let parameters: Vec<_> = case.variables.iter().map(|&j| &study.parameters[j]).collect();
-        let compute = |name: EngineName, eps: f64| -> Result<(GradientTable, f64), EvaluationError> {
-            context.progress.tell(&Event::Stage { name: format!("gradient with {}", name.as_str()) });
-            let began = Instant::now();
-            let table = engine(name, eps)
-                .gradient(&model, &at.orbits[c], &case.options, &case.quantities, context.cancel)
-                .map_err(|e| {
-                    if context.cancel.is_cancelled() {
-                        EvaluationError::Cancelled
-                    } else {
-                        failed(e.to_string())
-                    }
-                })?;
-            Ok((table, began.elapsed().as_secs_f64() / simulation_s))
-        };
-        let (reference, _) = compute(EngineName::Adj, 0.0)?;
+    (0..plan.cases.len())
+        .map(|c| {
+            let bench = Bench { study, plan: &plan, case: c, orbit: &at.orbits[c], simulation_s, context };
+            bench.compare(engines, sweep)
+        })
+        .collect()
+}
+
+/// One bearing at one operating point on which engines are compared.
+struct Bench<'a> {
+    study: &'a Study,
+    plan: &'a Plan<'a>,
+    case: usize,
+    orbit: &'a Orbit,
+    simulation_s: f64,
+    context: RunContext<'a>,
+}
+
+impl Bench<'_> {
+    fn compare(&self, engines: &[EngineName], sweep: &Sweep) -> Result<EngineComparison, EvaluationError> {
+        let (label, quantities) = (self.plan.cases[self.case], &self.plan.quantities[self.case]);
+        let parameters = self.parameters();
+        let model = self.plan.problem.model(self.case, &self.plan.start)?;
+        let (reference, _) = self.compute(&model, EngineName::Adj, 0.0)?;
         let mut rows = Vec::new();
         for &name in engines {
             let finite = !matches!(name, EngineName::Tra | EngineName::Adj);
             let steps: Vec<Option<f64>> =
                 if finite { sweep.0.iter().map(|e| Some(*e)).collect() } else { vec![None] };
             for perturbation in steps {
-                let row = match compute(name, perturbation.unwrap_or(0.0)) {
+                rows.push(match self.compute(&model, name, perturbation.unwrap_or(0.0)) {
                     Ok((table, time_ratio)) => EngineRow {
-                        engine: name,
-                        perturbation,
-                        values: shown(&table, &plan.quantities[c], &parameters),
+                        values: shown(&table, quantities, &parameters),
                         error: differences(&table, &reference, model.parameters()),
                         sweeps: table.sweeps,
                         cost: table.cost,
                         time_ratio,
-                        failure: None,
+                        ..EngineRow::failed(name, perturbation, None)
                     },
                     Err(EvaluationError::Cancelled) => return Err(EvaluationError::Cancelled),
-                    Err(EvaluationError::Failed(reason)) => EngineRow {
-                        engine: name,
-                        perturbation,
-                        values: Vec::new(),
-                        error: Vec::new(),
-                        sweeps: 0.0,
-                        cost: Cost::default(),
-                        time_ratio: 0.0,
-                        failure: Some(reason),
-                    },
-                };
-                rows.push(row);
+                    Err(EvaluationError::Failed(reason)) => {
+                        EngineRow::failed(name, perturbation, Some(reason))
+                    }
+                });
             }
         }
-        let units = plan.quantities[c].iter().map(|q| {
-            parameters
-                .iter()
-                .map(|p| format!("{}/{}", q.unit().0, p.variable.unit.replace("degC", "K")))
-                .collect()
-        });
-        comparisons.push(EngineComparison {
-            bearing: study.bearings[label.bearing].name.clone(),
-            operating_point: study.points[label.point].name.clone(),
-            quantities: plan.quantities[c].iter().map(|q| q.key().to_owned()).collect(),
+        let unit = |q: &QuantityName, p: &ParameterPlan| {
+            format!("{}/{}", q.unit().0, p.variable.unit.replace("degC", "K"))
+        };
+        Ok(EngineComparison {
+            bearing: self.study.bearings[label.bearing].name.clone(),
+            operating_point: self.study.points[label.point].name.clone(),
+            quantities: quantities.iter().map(|q| q.key().to_owned()).collect(),
             parameters: parameters.iter().map(|p| p.name.clone()).collect(),
-            units: units.collect(),
+            units: quantities.iter().map(|q| parameters.iter().map(|p| unit(q, p)).collect()).collect(),
             rows,
-        });
+        })
     }
-    Ok(comparisons)
+
+    fn parameters(&self) -> Vec<&ParameterPlan> {
+        let case = &self.plan.problem.cases()[self.case];
+        case.variables.iter().map(|&j| &self.study.parameters[j]).collect()
+    }
+
+    /// Gradient of one engine and its wall time in simulations.
+    fn compute(
+        &self,
+        model: &JournalBearing,
+        name: EngineName,
+        perturbation: f64,
+    ) -> Result<(GradientTable, f64), EvaluationError> {
+        let (case, cancel) = (&self.plan.problem.cases()[self.case], self.context.cancel);
+        self.context.progress.tell(&Event::Stage { name: format!("gradient with {}", name.as_str()) });
+        let began = Instant::now();
+        let result =
+            engine(name, perturbation).gradient(model, self.orbit, &case.options, &case.quantities, cancel);
+        let table = result.map_err(|e| match cancel.is_cancelled() {
+            true => EvaluationError::Cancelled,
+            false => EvaluationError::Failed(e.to_string()),
+        })?;
+        Ok((table, began.elapsed().as_secs_f64() / self.simulation_s))
+    }
+}
+
+impl EngineRow {
+    /// A row without values.
+    fn failed(engine: EngineName, perturbation: Option<f64>, failure: Option<String>) -> Self {
+        Self {
+            engine,
+            perturbation,
+            values: Vec::new(),
+            error: Vec::new(),
+            sweeps: 0.0,
+            cost: Cost::default(),
+            time_ratio: 0.0,
+            failure,
+        }
+    }
 }
 
 /// Derivatives in the units of reports.

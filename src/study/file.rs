@@ -106,7 +106,7 @@ section! {
         firing_order: Vec<String>,
         /// Unbalanced mass of one throw at the crank radius (pin and webs less counterweights). Default "0 kg". For main bearings.
         throw_mass: Mass,
-        /// Distance of the two rods on one pin over the distance of the main bearings. Default 0. For main bearings.
+        /// Distance of the two rods on one pin over the distance of the main bearings; bank A nearer to the free end. Default 0. For main bearings.
         rod_spacing_ratio: f64,
     }
 }

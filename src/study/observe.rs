@@ -2,14 +2,13 @@
 
 use super::build::{CaseLabel, Plan};
 use super::check::Study;
+use super::vocabulary::QuantityName;
 use crate::cranktrain::{BearingOutput, JournalBearing};
 use crate::dae::{At, Dae};
 use crate::film::Gap;
 use crate::optimise::Evaluated;
 use crate::orbit::Orbit;
 use crate::report::{Curves, Extremum, Loss, OrbitReport, PressureReport};
-
-const L_MIN: f64 = 1e-3 / 60.0;
 
 /// Cylinder pressure at the first operating point, in numbers and as a curve (degrees, MPa).
 pub(super) fn cylinder(study: &Study) -> (Option<PressureReport>, Vec<(f64, f64)>) {
@@ -125,7 +124,7 @@ impl Trace {
             trace.pressure_mpa.push(pressure * 1e-6);
             trace.loss_w.push(y[BearingOutput::Loss.index()]);
             trace.dissipation_w.push(y[BearingOutput::Dissipation.index()]);
-            trace.side_flow_l_min.push(y[BearingOutput::SideFlow.index()] / L_MIN);
+            trace.side_flow_l_min.push(y[BearingOutput::SideFlow.index()] / QuantityName::SideFlow.unit().1);
             trace.load_kn.push(model.drive(at.t_s).load_n.map(|f| f * 1e-3));
             if pressure > highest {
                 highest = pressure;

@@ -53,11 +53,11 @@ pub struct ParameterPlan {
     pub bearing: Option<usize>,
     /// Which property.
     pub variable: Variable,
-    /// Box and start, SI units.
+    /// Lower bound, SI units.
     pub lower: f64,
-    /// Upper bound.
+    /// Upper bound, SI units.
     pub upper: f64,
-    /// Start.
+    /// Start of the search, SI units.
     pub start: f64,
 }
 
@@ -85,8 +85,8 @@ pub struct FilmPlan {
     pub cells_around: usize,
     /// Cells across half of the width.
     pub cells_across_half: usize,
-    /// Above the surroundings, Pa.
+    /// Pressure at both edges above that of the surroundings, Pa.
     pub side_pressure_pa: f64,
-    /// Above the surroundings, Pa.
+    /// Cavitation pressure above that of the surroundings (usually below zero), Pa.
     pub cavitation_pressure_pa: f64,
 }

@@ -13,6 +13,7 @@ use crate::report::{
     Report,
 };
 use crate::run::{Cancel, Event, RunContext};
+use crate::units::tidy;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -232,11 +233,6 @@ fn words(sense: Sense) -> &'static str {
         Sense::AtLeast => "at least",
         Sense::AtMost => "at most",
     }
-}
-
-/// A number without the noise of unit conversion.
-fn tidy(value: f64) -> f64 {
-    format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 fn constraints(
