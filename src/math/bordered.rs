@@ -5,7 +5,7 @@
 //! [ K S ] [x2] = [r2]
 //! ```
 //!
-//! One band solve per right-hand side, forward or transposed. `A` may be empty (a film in closed form): then `S` is all.
+//! One band solve serves all right-hand sides of a call, forward or transposed, and one gives all of `V`. `A` may be empty (a film in closed form): then `S` is all.
 
 use super::vector::{axpy, dot};
 use super::{CyclicBand, Singular, Stencil};
@@ -57,20 +57,20 @@ impl Bordered {
 
     /// Factorises with `a` as the band part.
     pub fn factor(&mut self, a: &Stencil) -> Result<(), Singular> {
-        let mut sigma = self.corner.clone();
+        // A handful of unknowns: the inverse serves both kinds of solve without allocation.
+        let sigma = &mut self.sigma_inverse;
+        sigma.copy_from(&self.corner);
         if let Some(band) = &mut self.band {
             band.factor(a)?;
             band.solve(&mut self.columns);
-            for i in 0..self.k {
-                let row = &self.rows[i * self.n..(i + 1) * self.n];
-                for j in 0..self.k {
-                    sigma[(i, j)] -= dot(row, &self.columns[j * self.n..(j + 1) * self.n]);
+            for (i, row) in self.rows.chunks_exact(self.n).enumerate() {
+                for (j, column) in self.columns.chunks_exact(self.n).enumerate() {
+                    sigma[(i, j)] -= dot(row, column);
                 }
             }
         }
-        // A handful of unknowns: the inverse serves both kinds of solve without allocation.
-        self.sigma_inverse = sigma.try_inverse().ok_or(Singular(self.n))?;
-        if self.sigma_inverse.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(Singular(self.n)) }
+        let regular = sigma.try_inverse_mut() && sigma.iter().all(|v| v.is_finite());
+        if regular { Ok(()) } else { Err(Singular(self.n)) }
     }
 
     /// `x = Sigma^-1 x`, or with the transposed matrix.
@@ -85,13 +85,13 @@ impl Bordered {
 
     /// Replaces each column of `rhs` by the solution.
     pub fn solve(&self, rhs: &mut [f64]) {
+        if let Some(band) = &self.band {
+            band.solve_spaced(rhs, self.len());
+        }
         for x in rhs.chunks_exact_mut(self.len()) {
             let (x1, x2) = x.split_at_mut(self.n);
-            if let Some(band) = &self.band {
-                band.solve(x1);
-                for (i, v) in x2.iter_mut().enumerate() {
-                    *v -= dot(&self.rows[i * self.n..(i + 1) * self.n], x1);
-                }
+            for (i, v) in x2.iter_mut().enumerate() {
+                *v -= dot(&self.rows[i * self.n..(i + 1) * self.n], x1);
             }
             self.solve_corner(x2, false);
             for (j, v) in x2.iter().enumerate() {
@@ -108,12 +108,12 @@ impl Bordered {
                 *v -= dot(&self.columns[j * self.n..(j + 1) * self.n], x1);
             }
             self.solve_corner(x2, true);
-            if let Some(band) = &self.band {
-                for (i, v) in x2.iter().enumerate() {
-                    axpy(x1, -v, &self.rows[i * self.n..(i + 1) * self.n]);
-                }
-                band.solve_transposed(x1);
+            for (i, v) in x2.iter().enumerate() {
+                axpy(x1, -v, &self.rows[i * self.n..(i + 1) * self.n]);
             }
+        }
+        if let Some(band) = &self.band {
+            band.solve_transposed_spaced(rhs, self.len());
         }
     }
 }
@@ -153,12 +153,21 @@ mod tests {
         let (mut system, a, dense) = example();
         system.factor(&a).unwrap();
         let truth = nalgebra::DVector::from_fn(11, |i, _| i as f64 - 4.0);
-        let mut x: Vec<f64> = (&dense * &truth).iter().copied().collect();
-        let mut y: Vec<f64> = (dense.transpose() * &truth).iter().copied().collect();
+        // Three right-hand sides, of which the solutions are multiples of one.
+        let columns = |m: &DMatrix<f64>| -> Vec<f64> {
+            [1.0, -2.0, 0.5]
+                .iter()
+                .flat_map(|f| (m * &truth * *f).iter().copied().collect::<Vec<_>>())
+                .collect()
+        };
+        let (mut x, mut y) = (columns(&dense), columns(&dense.transpose()));
         system.solve(&mut x);
         system.solve_transposed(&mut y);
-        for i in 0..11 {
-            assert!((x[i] - truth[i]).abs() < 1e-11 && (y[i] - truth[i]).abs() < 1e-11);
+        for (c, f) in [1.0, -2.0, 0.5].iter().enumerate() {
+            for i in 0..11 {
+                let wanted = f * truth[i];
+                assert!((x[11 * c + i] - wanted).abs() < 1e-11 && (y[11 * c + i] - wanted).abs() < 1e-11);
+            }
         }
     }
 
