@@ -1,8 +1,8 @@
-//! The geometric scalars of a film on its mesh and how derivatives by them return to the [`FilmInput`].
+//! The scalars the discrete equations are written in and how derivatives by them return to the [`FilmInput`].
 
 use super::{FilmInput, Mesh};
 
-/// Scalars the discrete equations are written in.
+/// Scalars of the mesh and the surfaces.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Scalars {
     /// Surface speed of the journal relative to the shell, m/s.
@@ -13,6 +13,14 @@ pub(super) struct Scalars {
     pub dz: f64,
     /// Viscosity, Pa s.
     pub eta: f64,
+    /// Radial clearance, m.
+    pub clearance: f64,
+    /// Roughness of the journal, m.
+    pub journal: f64,
+    /// Roughness of the shell, m.
+    pub shell: f64,
+    /// Supply pressure above the surroundings, Pa.
+    pub supply: f64,
 }
 
 impl Scalars {
@@ -23,6 +31,10 @@ impl Scalars {
             dx: radius * mesh.d_phi(),
             dz: u.width_m * mesh.cell_share(),
             eta: u.viscosity_pa_s,
+            clearance: u.clearance_m,
+            journal: u.journal_roughness_m,
+            shell: u.shell_roughness_m,
+            supply: u.supply_pressure_pa,
         }
     }
 
@@ -30,9 +42,7 @@ impl Scalars {
     pub fn tangent(mesh: &Mesh, u: &FilmInput, du: &FilmInput) -> Self {
         Self {
             speed: (du.speed_rad_s * u.diameter_m + u.speed_rad_s * du.diameter_m) / 2.0,
-            dx: du.diameter_m / 2.0 * mesh.d_phi(),
-            dz: du.width_m * mesh.cell_share(),
-            eta: du.viscosity_pa_s,
+            ..Self::of(mesh, du)
         }
     }
 
@@ -42,5 +52,9 @@ impl Scalars {
         u_bar.diameter_m += self.speed * u.speed_rad_s / 2.0 + self.dx * mesh.d_phi() / 2.0;
         u_bar.width_m += self.dz * mesh.cell_share();
         u_bar.viscosity_pa_s += self.eta;
+        u_bar.clearance_m += self.clearance;
+        u_bar.journal_roughness_m += self.journal;
+        u_bar.shell_roughness_m += self.shell;
+        u_bar.supply_pressure_pa += self.supply;
     }
 }

@@ -25,6 +25,9 @@ pub struct Mesh {
     pub axial: Axial,
     /// `cos phi` and `sin phi` of each column.
     pub normals: Vec<[f64; 2]>,
+    /// `zeta = 2 z / L` of each row of cells: 0 at the mid-plane, -1 and 1 at the edges.
+    pub zetas: Vec<f64>,
+    points: Vec<[f64; 2]>,
 }
 
 impl Mesh {
@@ -37,7 +40,35 @@ impl Mesh {
                 [c, s]
             })
             .collect();
-        Self { n_phi, n_z, axial, normals }
+        let zeta = |j: usize| match axial {
+            Axial::Half => (j as f64 + 0.5) / n_z as f64,
+            Axial::Full => (2 * j + 1) as f64 / n_z as f64 - 1.0,
+        };
+        let zetas: Vec<f64> = (0..n_z).map(zeta).collect();
+        let phi = |i: usize| TAU * i as f64 / n_phi as f64;
+        let points = (0..n_phi).flat_map(|i| zetas.iter().map(move |z| [phi(i), *z])).collect();
+        Self { n_phi, n_z, axial, normals, zetas, points }
+    }
+
+    /// `(phi, zeta)` of every cell centre.
+    pub fn points(&self) -> &[[f64; 2]] {
+        &self.points
+    }
+
+    /// Size of a cell in `phi` and `zeta`.
+    pub fn cell_size(&self) -> [f64; 2] {
+        [self.d_phi(), 2.0 * self.cell_share()]
+    }
+
+    /// Values of the cells as rows over `phi` and columns from edge to edge.
+    pub fn map(&self, values: impl IntoIterator<Item = f64>) -> Vec<Vec<f64>> {
+        let all: Vec<f64> = values.into_iter().collect();
+        all.chunks_exact(self.n_z)
+            .map(|row| match self.axial {
+                Axial::Full => row.to_vec(),
+                Axial::Half => row.iter().rev().chain(row).copied().collect(),
+            })
+            .collect()
     }
 
     /// Number of cells.

@@ -4,146 +4,234 @@
 //! the shell's centre to the gap at `phi`. The journal's centre stands at the eccentricity `e` and moves with `v = e'`:
 //!
 //! ```text
-//! h = C - e.n            gap;  the smallest gap lies where the journal approaches the shell
-//! h' = -v.n              squeeze at rest in the shell frame
-//! force = -Int p n dA    on the journal
+//! h = C - (e + z tilt).n + shape      gap;  the smallest gap lies where the journal approaches the shell
+//! force = -Int p n dA                 on the journal
 //! ```
 //!
-//! A film model has unknowns `q` (pressures; none in closed form), a residual `r(q, u) = 0` and outputs `y(q, u)`, both
-//! of the [`FilmInput`] `u`, with all first derivatives as products. Only the relative speed of the surfaces drags oil,
-//! so a rotating shell (connecting rod) needs no more than the relative speed and the load in its own frame.
+//! A film is a function of its site (input and shape), its unknowns `q` (none in closed form) and the rate `c'` of its
+//! oil content, with values
 //!
-//! Deliberately not here: loads, motion, time.
+//! ```text
+//! r(q, site, c') = 0      balance of every cell
+//! c(q, site)              oil content of every cell: what a step remembers
+//! y(q, site)              loads, losses, extrema, flow
+//! ```
+//!
+//! All first derivatives are there in both directions: [`FilmModel::tangent`] and [`FilmModel::cotangent`]. Only the
+//! relative speed of the surfaces drags oil, so a rotating shell (connecting rod) needs no more than the relative speed
+//! and the load in its own frame. Deliberately not here: loads, motion, time.
 
+mod cavitation;
+mod cells;
+mod cotangent;
+mod faces;
 mod fields;
 mod gap;
+mod input;
+mod integrals;
+mod jet;
+mod linearise;
 mod mesh;
 mod reynolds;
-mod reynolds_derivatives;
 mod reynolds_model;
+mod shape;
 mod short;
 mod steady;
+mod supply;
+mod tangent;
 
+pub use cavitation::{Cavitation, CavityShear, up_to_the_switch};
 pub use gap::Gap;
+pub use input::{FilmInput, FilmOutput, INPUTS, OUTPUTS};
+pub use linearise::FilmLinear;
 pub use mesh::{Axial, Mesh};
-pub use reynolds::{Cavitation, Reynolds};
+pub use reynolds::{MassBalance, Oil, Reynolds, Roughness};
+pub use shape::{Profile, SPLIT_HALF_WIDTH, SampledProfile, ShapeError, SurfaceTable, TensorSpline};
 pub use short::ShortFilm;
-pub use steady::{SteadyError, SteadyState, steady};
+pub use steady::{SteadyError, SteadyState, steady, steady_at};
+pub use supply::{Feed, Opening, OpeningError, all_symmetric};
 
-use crate::math::Stencil;
-
-/// Everything the film depends on at one instant; the same shape carries changes and derivatives of these quantities.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct FilmInput {
-    /// Position of the journal's centre in the shell frame, m.
-    pub eccentricity_m: [f64; 2],
-    /// Velocity of the journal's centre in the shell frame, m/s.
-    pub velocity_m_s: [f64; 2],
-    /// Angular speed of the journal relative to the shell, rad/s.
-    pub speed_rad_s: f64,
-    /// Width of the bearing, m.
-    pub width_m: f64,
-    /// Diameter of the bearing, m.
-    pub diameter_m: f64,
-    /// Radial clearance, m.
-    pub clearance_m: f64,
-    /// Dynamic viscosity of the film, Pa s.
-    pub viscosity_pa_s: f64,
+/// Where a film is evaluated; the same shape carries changes.
+#[derive(Debug, Clone, Copy)]
+pub struct FilmSite<'a> {
+    /// The scalars.
+    pub input: FilmInput,
+    /// What the shapes of journal and shell add to the gap in every cell, m; empty for a cylindrical bearing.
+    pub shape_m: &'a [f64],
+    /// How far the journal has turned, rad: where its openings stand. Not differentiated.
+    pub journal_angle_rad: f64,
 }
 
-/// What the film answers; the same shape carries changes and weights.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct FilmOutput {
-    /// Force of the film on the journal, N.
-    pub force_n: [f64; 2],
-    /// Hydrodynamic friction loss: power of the wall shear stress on the journal, W.
-    pub loss_w: f64,
-    /// Power dissipated in the oil: the wall power less the squeeze power, W.
-    pub dissipation_w: f64,
-    /// Smallest gap, m.
-    pub gap_min_m: f64,
-    /// Smooth maximum of the film pressure over the bearing (above the exact one), Pa.
-    pub pressure_peak_pa: f64,
-    /// Oil that leaves at both edges, m3/s.
-    pub side_flow_m3_s: f64,
-}
-
-impl FilmInput {
-    /// Adds the numbers of another.
-    pub fn add(&mut self, other: &Self) {
-        for a in 0..2 {
-            self.eccentricity_m[a] += other.eccentricity_m[a];
-            self.velocity_m_s[a] += other.velocity_m_s[a];
-        }
-        self.speed_rad_s += other.speed_rad_s;
-        self.width_m += other.width_m;
-        self.diameter_m += other.diameter_m;
-        self.clearance_m += other.clearance_m;
-        self.viscosity_pa_s += other.viscosity_pa_s;
+impl From<FilmInput> for FilmSite<'static> {
+    fn from(input: FilmInput) -> Self {
+        Self { input, shape_m: &[], journal_angle_rad: 0.0 }
     }
 }
 
-impl FilmOutput {
-    /// Multiplies the integrals over the bearing.
-    fn times(&mut self, copies: f64) {
-        self.force_n = self.force_n.map(|f| f * copies);
-        self.loss_w *= copies;
-        self.dissipation_w *= copies;
-        self.side_flow_m3_s *= copies;
-    }
+/// What the derivatives at a place rest on; made by [`FilmModel::fix`].
+#[derive(Debug, Clone, Default)]
+pub struct FilmPoint {
+    gap: Vec<f64>,
+    cells: Vec<cells::Cell<{ jet::SLOTS }>>,
+    cover: reynolds::Cover,
 }
 
-/// A film with its derivatives. `q` are the film's unknowns, `u` is the [`FilmInput`].
+/// A place with what was evaluated there.
+#[derive(Debug, Clone, Copy)]
+pub struct FilmPlace<'a> {
+    /// The site.
+    pub site: &'a FilmSite<'a>,
+    /// The unknowns.
+    pub q: &'a [f64],
+    /// The rate of the content, m/s. May be empty where the residual is not asked for.
+    pub rate: &'a [f64],
+    /// What [`FilmModel::fix`] made of site and unknowns.
+    pub point: &'a FilmPoint,
+}
+
+/// A direction in everything a film depends on. Empty vectors stand for zero.
+#[derive(Debug, Clone, Copy)]
+pub struct FilmChange<'a> {
+    /// Change of the unknowns.
+    pub q: &'a [f64],
+    /// Change of the rate of the content.
+    pub rate: &'a [f64],
+    /// Change of the scalars.
+    pub input: FilmInput,
+    /// Change of the shape.
+    pub shape_m: &'a [f64],
+}
+
+/// Which parts of a [`FilmTangent`] are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wanted {
+    /// The residual.
+    pub residual: bool,
+    /// The content.
+    pub content: bool,
+    /// The outputs.
+    pub output: bool,
+}
+
+impl Wanted {
+    /// Everything.
+    pub const ALL: Self = Self { residual: true, content: true, output: true };
+}
+
+/// What a [`FilmChange`] does.
+#[derive(Debug, Clone, Default)]
+pub struct FilmTangent {
+    /// Change of the residual.
+    pub residual: Vec<f64>,
+    /// Change of the content.
+    pub content: Vec<f64>,
+    /// Change of the outputs.
+    pub output: FilmOutput,
+}
+
+/// Weights on what a film answers. Empty vectors stand for zero.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FilmWeights<'a> {
+    /// On the residual.
+    pub residual: &'a [f64],
+    /// On the content.
+    pub content: &'a [f64],
+    /// On the outputs.
+    pub output: FilmOutput,
+}
+
+/// Derivatives of a weighted sum by everything a film depends on.
+#[derive(Debug, Clone, Default)]
+pub struct FilmCotangent {
+    /// By the unknowns.
+    pub q: Vec<f64>,
+    /// By the rate of the content.
+    pub rate: Vec<f64>,
+    /// By the scalars.
+    pub input: FilmInput,
+    /// By the gap of every cell: the sensitivity map, and the derivative by the shape. Empty for a film without cells.
+    pub gap_m: Vec<f64>,
+}
+
+/// A film with its derivatives.
 pub trait FilmModel: Send + Sync {
+    /// The mesh; none for a film in closed form.
+    fn mesh(&self) -> Option<&Mesh>;
+
     /// Blocks and unknowns per block of the cyclic stencil; `(0, 0)` for a film in closed form.
-    fn shape(&self) -> (usize, usize);
-
-    /// Writes `r(q, u)`.
-    fn residual(&self, u: &FilmInput, q: &[f64], r: &mut [f64]);
-
-    /// Writes `r_q` (for a semi-smooth residual one element of its generalised Jacobian).
-    fn stencil(&self, u: &FilmInput, q: &[f64], a: &mut Stencil);
-
-    /// The stencil and one column `r_u du` per change of the input, together for less than one by one.
-    fn linearise(&self, u: &FilmInput, q: &[f64], dus: &[FilmInput], a: &mut Stencil, columns: &mut [f64]) {
-        self.stencil(u, q, a);
-        if !q.is_empty() {
-            for (du, column) in dus.iter().zip(columns.chunks_exact_mut(q.len())) {
-                self.residual_tangent(u, q, du, column);
-            }
-        }
+    fn shape(&self) -> (usize, usize) {
+        self.mesh().map_or((0, 0), |m| (m.n_phi, m.n_z))
     }
 
-    /// `out += r_u du`.
-    fn residual_tangent(&self, u: &FilmInput, q: &[f64], du: &FilmInput, out: &mut [f64]);
+    /// Number of unknowns, which is also the number of contents.
+    fn unknowns(&self) -> usize {
+        let (blocks, b) = self.shape();
+        blocks * b
+    }
 
-    /// `r_u^T lambda`.
-    fn residual_cotangent(&self, u: &FilmInput, q: &[f64], lambda: &[f64]) -> FilmInput;
+    /// Writes the oil content of every cell, as a thickness at reference density, m.
+    fn content(&self, site: &FilmSite, q: &[f64], content: &mut [f64]);
 
-    /// The force alone, for the balance of a step.
-    fn force_n(&self, u: &FilmInput, q: &[f64]) -> [f64; 2];
+    /// Writes the balance of every cell for a given rate of its content (m/s): net outflow, m3/s.
+    fn residual(&self, site: &FilmSite, q: &[f64], rate: &[f64], r: &mut [f64]);
 
-    /// Change of the force for a change of the input at fixed `q`.
-    fn force_tangent(&self, u: &FilmInput, q: &[f64], du: &FilmInput) -> [f64; 2];
+    /// Everything a Newton step needs, for the rate `alpha c + past`, in one pass and without allocation.
+    fn linearise(&self, site: &FilmSite, q: &[f64], alpha: f64, past: &[f64], into: &mut FilmLinear);
 
-    /// Derivative of `w.force` by the input; adds its derivative by `q` to `q_bar` if asked.
-    fn force_cotangent(&self, u: &FilmInput, q: &[f64], w: [f64; 2], q_bar: Option<&mut [f64]>) -> FilmInput;
+    /// `y(q, site)`.
+    fn output(&self, site: &FilmSite, q: &[f64]) -> FilmOutput;
 
-    /// `y(q, u)`.
-    fn output(&self, u: &FilmInput, q: &[f64]) -> FilmOutput;
+    /// Evaluates everything the derivatives at a place rest on, once for many directions and weights.
+    fn fix(&self, site: &FilmSite, q: &[f64], into: &mut FilmPoint);
 
-    /// `y_q dq + y_u du`.
-    fn output_tangent(&self, u: &FilmInput, q: &[f64], dq: &[f64], du: &FilmInput) -> FilmOutput;
+    /// Changes of residual, content and outputs along a direction at a fixed place.
+    fn tangent_at(&self, place: &FilmPlace, change: &FilmChange, wanted: Wanted) -> FilmTangent;
 
-    /// Adds `y_q^T w` to `q_bar` and returns `y_u^T w`.
-    fn output_cotangent(&self, u: &FilmInput, q: &[f64], w: &FilmOutput, q_bar: &mut [f64]) -> FilmInput;
+    /// Derivatives of a weighted sum of residual, content and outputs at a fixed place.
+    fn cotangent_at(&self, place: &FilmPlace, weights: &FilmWeights) -> FilmCotangent;
+
+    /// [`Self::tangent_at`] for a single direction.
+    fn tangent(&self, site: &FilmSite, q: &[f64], rate: &[f64], change: &FilmChange) -> FilmTangent {
+        let mut point = FilmPoint::default();
+        self.fix(site, q, &mut point);
+        let wanted = Wanted { residual: !rate.is_empty(), ..Wanted::ALL };
+        self.tangent_at(&FilmPlace { site, q, rate, point: &point }, change, wanted)
+    }
+
+    /// [`Self::cotangent_at`] for a single weighted sum.
+    fn cotangent(&self, site: &FilmSite, q: &[f64], rate: &[f64], weights: &FilmWeights) -> FilmCotangent {
+        let mut point = FilmPoint::default();
+        self.fix(site, q, &mut point);
+        self.cotangent_at(&FilmPlace { site, q, rate, point: &point }, weights)
+    }
+
+    /// Largest share of a change of eccentricity and tilt, at most 1, that leaves at least `keep` of every gap.
+    fn admissible(&self, site: &FilmSite, motion: [f64; 4], keep: f64) -> f64;
+
+    /// Whether every gap is one the film is defined for.
+    fn contains(&self, site: &FilmSite) -> bool;
+
+    /// Size of a change of the unknowns against the unknowns themselves.
+    fn change(&self, q: &[f64], dq: &[f64]) -> f64;
 
     /// Largest film pressure, exact on the mesh, Pa.
-    fn pressure_max_pa(&self, u: &FilmInput, q: &[f64]) -> f64;
+    fn pressure_max_pa(&self, site: &FilmSite, q: &[f64]) -> f64;
 
-    /// Number of cells in which both the pressure and its slack are almost zero: there the film has a kink.
-    fn weakly_active(&self, u: &FilmInput, q: &[f64]) -> usize;
+    /// Largest contact pressure, exact on the mesh, Pa.
+    fn contact_max_pa(&self, site: &FilmSite, q: &[f64]) -> f64;
+
+    /// Whether the oil in the cavity is kept account of.
+    fn conserves_mass(&self) -> bool;
+
+    /// Smallest fill of any cell.
+    fn least_fill(&self, q: &[f64]) -> f64;
+
+    /// Number of cells in which pressure and void are almost zero together: there the film has a kink.
+    fn weakly_active(&self, q: &[f64]) -> usize;
 
     /// Film pressure as rows over `phi` (first index) and columns over the width, Pa.
-    fn pressure_map_pa(&self, u: &FilmInput, q: &[f64]) -> Vec<Vec<f64>>;
+    fn pressure_map_pa(&self, site: &FilmSite, q: &[f64]) -> Vec<Vec<f64>>;
+
+    /// Share of the gap filled with oil, like the pressure map.
+    fn fill_map(&self, site: &FilmSite, q: &[f64]) -> Vec<Vec<f64>>;
 }

@@ -1,34 +1,61 @@
-//! Reynolds' equation of an isoviscous film by finite volumes, with Swift-Stieber cavitation.
+//! Reynolds' equation by finite volumes: pressure and oil content of a bearing with supply, on rough or smooth surfaces.
 //!
-//! With `q = p - p_cav` the net outflow of cell `(i, j)` is
+//! With the flow `J` through the faces ([`super::faces`]) and the content `c = fill rho h_T` of the cells, the net
+//! outflow of a cell and its row are
 //!
 //! ```text
-//! r = sum_faces h_f^3 / (12 eta) (q - q_neighbour) length/distance     pressure flow
-//!   + U/2 (h_east - h_west) dz                                         Couette flow through the faces
-//!   + h' dx dz                                                         squeeze
+//! balance = sum_faces J + dx dz c'                            m3/s at reference density
+//! row     = (1 - m) balance + m g (p - p_supply) + g q_slack
 //! ```
 //!
-//! with `h_f` the mean gap of the two cells of a face: second order in the cell size, conservative by construction. At
-//! the edges of the bearing the pressure is the side pressure, half a cell away from the cell centre.
+//! where `m` is the share of the cell that an opening covers ([`super::supply`]) and `g = C^3 / (12 eta) (dz/dx + dx/dz)` a
+//! conductance of the size of the film's own. A covered cell stands at the supply pressure; what its balance lacks is
+//! what the opening feeds. `q_slack = min(q, 0)` for Swift-Stieber, else nothing ([`super::cavitation`]). At the edges of
+//! the bearing the pressure is the side pressure, half a cell away from the cell centre.
 //!
-//! Swift-Stieber (`p >= p_cav`, `r >= 0`, one of them zero) is the complementarity problem `min(d q, r) = 0` with the
-//! diagonal `d`; Newton's method on it is the primal-dual active set method, finite and monotone for M-matrices
-//! (Hintermueller, Ito and Kunisch 2003). The loss is the wall power; by summation by parts over the same faces it equals
-//! dissipation plus squeeze power to rounding (with pressure at the edges or in grooves, plus the power of the flow there).
-//!
-//! Deliberately not here: mass conservation in the cavity, roughness, variable viscosity.
+//! Deliberately not here: derivatives ([`super::linearise`], [`super::tangent`], [`super::cotangent`]), integrals.
 
+use super::cavitation::{Cavitation, CavityShear};
+use super::cells::Cell;
+use super::faces::{Face, Sides};
 use super::fields::Scalars;
-use super::{FilmInput, FilmOutput, Gap, Mesh};
-use crate::math::{PowerMean, Stencil};
+use super::supply::{Feed, any_on_journal, covers};
+use super::{FilmSite, Gap, Mesh};
+use crate::laws::{Compressibility, GreenwoodTripp, Piezoviscosity, RoughSurfaces, ShearThinning};
 
-/// What the film does where it would pull.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cavitation {
-    /// It ruptures: the pressure does not fall below the cavitation pressure (Swift 1932, Stieber 1933).
-    SwiftStieber,
-    /// It holds any tension (Sommerfeld's full film); for comparison with closed forms.
-    None,
+/// How the oil depends on pressure and shear; its viscosity at ambient pressure is part of the input.
+#[derive(Debug, Clone)]
+pub struct Oil {
+    /// Viscosity over pressure.
+    pub piezoviscosity: Piezoviscosity,
+    /// Density over pressure.
+    pub compressibility: Compressibility,
+    /// Viscosity over shear rate.
+    pub shear_thinning: ShearThinning,
+}
+
+impl Oil {
+    /// An incompressible Newtonian oil of the same viscosity at every pressure.
+    pub fn plain() -> Self {
+        Self {
+            piezoviscosity: Piezoviscosity::None,
+            compressibility: Compressibility::Incompressible,
+            shear_thinning: ShearThinning::Newtonian,
+        }
+    }
+}
+
+/// Rough surfaces and what happens when they touch.
+#[derive(Debug, Clone)]
+pub struct Roughness {
+    /// Flow factors.
+    pub surfaces: RoughSurfaces,
+    /// Contact pressure; none for a film without contact.
+    pub contact: Option<GreenwoodTripp>,
+    /// Friction coefficient of boundary lubrication.
+    pub boundary_friction: f64,
+    /// How far mean planes may come together below zero gap, m; also keeps the smooth smallest gap above zero.
+    pub depth_m: f64,
 }
 
 /// Reynolds film on a mesh.
@@ -38,54 +65,123 @@ pub struct Reynolds {
     pub mesh: Mesh,
     /// Rupture model.
     pub cavitation: Cavitation,
+    /// Shear in the cavity.
+    pub cavity_shear: CavityShear,
     /// Pressure at both edges above the surroundings, Pa.
     pub side_pressure_pa: f64,
     /// Cavitation pressure above the surroundings (usually below zero), Pa.
     pub cavitation_pressure_pa: f64,
-    /// Columns held at a given pressure above the surroundings (narrow axial supply grooves).
+    /// Columns held at a given pressure above the surroundings, Pa: boundaries of comparison cases.
     pub held_columns: Vec<(usize, f64)>,
-    /// Sharpness of the smooth maximum of the film pressure.
+    /// Openings that feed oil at the supply pressure.
+    pub feeds: Vec<Feed>,
+    /// Oil.
+    pub oil: Oil,
+    /// Rough surfaces; none for smooth ones.
+    pub rough: Option<Roughness>,
+    /// Sharpness of the smooth extrema of pressure and gap.
     pub sharpness: f64,
 }
 
-/// One face between two cells, or between a cell and an edge (`b` is `None`).
-pub(super) struct Face {
-    pub a: usize,
-    pub b: Option<usize>,
-    /// Face across the circumference (oil is dragged through it) or across the width.
-    pub around: bool,
+/// Where the oil of a film goes; all flows in m3/s at reference density.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MassBalance {
+    /// From openings and held columns into the film.
+    pub supply: f64,
+    /// Out of both edges.
+    pub side: f64,
+    /// Rate of the content.
+    pub stored: f64,
+    /// `supply - side - stored`: what the balances of the cells leave.
+    pub error: f64,
+}
+
+/// How much of each cell is covered, and the pressure (above cavitation) it is held at there.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Cover {
+    pub share: Vec<f64>,
+    /// Whether the cell is held at a fixed pressure; else at the supply's.
+    pub fixed: Vec<Option<f64>>,
 }
 
 impl Reynolds {
-    /// A film at ambient pressure all around, Swift-Stieber, without grooves.
+    /// A smooth film at ambient pressure all around, Swift-Stieber, whole gap sheared, without supply.
     pub fn new(mesh: Mesh) -> Self {
         Self {
             mesh,
             cavitation: Cavitation::SwiftStieber,
+            cavity_shear: CavityShear::Full,
             side_pressure_pa: 0.0,
             cavitation_pressure_pa: 0.0,
             held_columns: Vec::new(),
+            feeds: Vec::new(),
+            oil: Oil::plain(),
+            rough: None,
             sharpness: 200.0,
         }
     }
 
-    /// `q` at the edges.
+    /// Side pressure above cavitation pressure.
     pub(super) fn side(&self) -> f64 {
         self.side_pressure_pa - self.cavitation_pressure_pa
+    }
+
+    /// Whether the openings turn.
+    pub(super) fn cover_turns(&self) -> bool {
+        any_on_journal(&self.feeds)
+    }
+
+    /// What the openings cover when the journal stands at an angle.
+    pub(super) fn cover(&self, journal_angle_rad: f64, into: &mut Cover) {
+        let n = self.mesh.cells();
+        into.share.resize(n, 0.0);
+        into.fixed.resize(n, None);
+        if self.feeds.is_empty() {
+            into.share.fill(0.0);
+        } else {
+            let (points, blur) = (self.mesh.points(), self.mesh.cell_size());
+            covers(&self.feeds, points, blur, journal_angle_rad, &mut into.share);
+        }
+        for &(i, p) in &self.held_columns {
+            for k in i * self.mesh.n_z..(i + 1) * self.mesh.n_z {
+                into.share[k] = 1.0;
+                into.fixed[k] = Some(p - self.cavitation_pressure_pa);
+            }
+        }
+    }
+
+    /// Conductance by which covered and slack cells are tied.
+    pub(super) fn tie(s: &Scalars) -> f64 {
+        s.clearance.powi(3) / (12.0 * s.eta) * (s.dz / s.dx + s.dx / s.dz)
+    }
+
+    /// Change of [`Self::tie`].
+    pub(super) fn tie_change(s: &Scalars, d: &Scalars) -> f64 {
+        let base = s.clearance.powi(3) / (12.0 * s.eta);
+        let aspect = s.dz / s.dx + s.dx / s.dz;
+        base * aspect * (3.0 * d.clearance / s.clearance - d.eta / s.eta)
+            + base * (s.dz / s.dx - s.dx / s.dz) * (d.dz / s.dz - d.dx / s.dx)
+    }
+
+    /// Adds a weight on [`Self::tie`].
+    pub(super) fn pull_tie(s: &Scalars, weight: f64, bar: &mut Scalars) {
+        let base = weight * s.clearance.powi(3) / (12.0 * s.eta);
+        let (aspect, skew) = (s.dz / s.dx + s.dx / s.dz, s.dz / s.dx - s.dx / s.dz);
+        bar.clearance += 3.0 * base * aspect / s.clearance;
+        bar.eta -= base * aspect / s.eta;
+        bar.dz += base * skew / s.dz;
+        bar.dx -= base * skew / s.dx;
     }
 
     /// Calls `visit` for every face of the mesh.
     pub(super) fn for_faces(&self, mut visit: impl FnMut(Face)) {
         let (n, b) = (self.mesh.n_phi, self.mesh.n_z);
         for i in 0..n {
+            let east = (i + 1) % n * b;
             for j in 0..b {
                 let a = i * b + j;
-                visit(Face { a, b: Some((i + 1) % n * b + j), around: true });
-                if j + 1 < b {
-                    visit(Face { a, b: Some(a + 1), around: false });
-                } else {
-                    visit(Face { a, b: None, around: false });
-                }
+                visit(Face { a, b: Some(east + j), around: true });
+                visit(Face { a, b: (j + 1 < b).then_some(a + 1), around: false });
                 if j == 0 && self.mesh.low_edge() {
                     visit(Face { a, b: None, around: false });
                 }
@@ -93,112 +189,96 @@ impl Reynolds {
         }
     }
 
-    /// Pressure conductance of a face, `h_f^3 / (12 eta) * length / distance`, and the gap there.
-    pub(super) fn conductance(&self, face: &Face, h: &[f64], s: &Scalars) -> (f64, f64) {
-        let (gap, aspect) = match face.b {
-            Some(b) if face.around => ((h[face.a] + h[b]) / 2.0, s.dz / s.dx),
-            Some(b) => ((h[face.a] + h[b]) / 2.0, s.dx / s.dz),
-            None => (h[face.a], 2.0 * s.dx / s.dz),
-        };
-        (gap * gap * gap / (12.0 * s.eta) * aspect, gap)
+    /// Gap and cell quantities.
+    pub(super) fn cells<const N: usize>(
+        &self,
+        site: &FilmSite,
+        q: &[f64],
+        gap: &mut Vec<f64>,
+        cells: &mut Vec<Cell<N>>,
+    ) {
+        let s = Scalars::of(&self.mesh, &site.input);
+        gap.resize(q.len(), 0.0);
+        Gap::fill(&self.mesh, site, gap);
+        cells.clear();
+        cells.extend(
+            gap.iter().zip(q).map(|(&h, &q)| {
+                Cell::at(self, &s, h, self.cavitation.split(q).p + self.cavitation_pressure_pa)
+            }),
+        );
     }
 
-    /// Net outflow of every cell and the diagonal of its derivative by `q`.
-    pub(super) fn outflow(&self, u: &FilmInput, q: &[f64], gap: &Gap, r: &mut [f64], diagonal: &mut [f64]) {
-        let s = Scalars::of(&self.mesh, u);
-        let side = self.side();
-        for ((r, d), rate) in r.iter_mut().zip(diagonal.iter_mut()).zip(&gap.rate) {
-            *r = rate * s.dx * s.dz;
-            *d = 0.0;
+    /// The two sides of a face.
+    pub(super) fn sides<'c, const N: usize>(
+        &self,
+        face: &Face,
+        cells: &'c [Cell<N>],
+        q: &[f64],
+        speed: f64,
+    ) -> Sides<'c, N> {
+        let at = |k: usize| self.cavitation.split(q[k]);
+        let (a, b) = (at(face.a), face.b.map(at));
+        Sides {
+            a: &cells[face.a],
+            b: face.b.map(|b| &cells[b]),
+            drop: a.p - b.map_or(self.side(), |b| b.p),
+            fill: if speed >= 0.0 { a.fill } else { b.map_or(1.0, |b| b.fill) },
         }
+    }
+
+    /// Net outflow of every cell.
+    pub(super) fn balance<const N: usize>(
+        &self,
+        cells: &[Cell<N>],
+        q: &[f64],
+        rate: &[f64],
+        s: &Scalars,
+        r: &mut [f64],
+    ) {
+        r.iter_mut().zip(rate).for_each(|(r, c)| *r = c * s.dx * s.dz);
         self.for_faces(|face| {
-            let (k, h) = self.conductance(&face, &gap.h, &s);
-            let outer = face.b.map_or(side, |b| q[b]);
-            let drag = if face.around { s.speed / 2.0 * h * s.dz } else { 0.0 };
-            let flow = k * (q[face.a] - outer) + drag;
+            let flow = self.sides(&face, cells, q, s.speed).flow(face.around, s).value;
             r[face.a] += flow;
-            diagonal[face.a] += k;
             if let Some(b) = face.b {
                 r[b] -= flow;
-                diagonal[b] += k;
             }
         });
     }
 
-    /// Which rows do not carry the flow balance: cavitated cells, and cells held at a pressure.
-    pub(super) fn is_passive(&self, u: &FilmInput, q: &[f64], gap: &Gap) -> Vec<bool> {
-        let n = self.mesh.cells();
-        let mut passive = vec![false; n];
-        if self.cavitation == Cavitation::SwiftStieber {
-            let (mut r, mut d) = (vec![0.0; n], vec![0.0; n]);
-            self.outflow(u, q, gap, &mut r, &mut d);
-            passive.iter_mut().enumerate().for_each(|(k, p)| *p = d[k] * q[k] <= r[k]);
-        }
-        for &(i, _) in &self.held_columns {
-            passive[i * self.mesh.n_z..(i + 1) * self.mesh.n_z].fill(true);
-        }
-        passive
-    }
-
-    pub(super) fn fill_stencil(&self, u: &FilmInput, gap: &Gap, passive: &[bool], a: &mut Stencil) {
-        let s = Scalars::of(&self.mesh, u);
-        a.clear();
-        self.for_faces(|face| {
-            let (k, _) = self.conductance(&face, &gap.h, &s);
-            a.diagonal[face.a] += k;
-            if let Some(other) = face.b {
-                a.diagonal[other] += k;
-                let (out, back) =
-                    if face.around { (&mut a.east, &mut a.west) } else { (&mut a.north, &mut a.south) };
-                out[face.a] = -k;
-                back[other] = -k;
+    /// Turns balances into rows.
+    pub(super) fn close_rows(&self, cover: &Cover, q: &[f64], s: &Scalars, r: &mut [f64]) {
+        let tie = Self::tie(s);
+        let slack = self.cavitation == Cavitation::SwiftStieber;
+        for (k, r) in r.iter_mut().enumerate() {
+            let m = cover.share[k];
+            if m > 0.0 {
+                let held = cover.fixed[k].unwrap_or(s.supply - self.cavitation_pressure_pa);
+                *r = (1.0 - m) * *r + m * tie * (self.cavitation.split(q[k]).p - held);
             }
-        });
-        for (k, _) in passive.iter().enumerate().filter(|(_, p)| **p) {
-            a.decouple(k, a.diagonal[k]);
+            if slack {
+                *r += tie * q[k].min(0.0);
+            }
         }
     }
 
-    /// Integrals over the bearing: see [`FilmOutput`].
-    pub(super) fn sums(&self, u: &FilmInput, q: &[f64], gap: &Gap) -> FilmOutput {
-        let s = Scalars::of(&self.mesh, u);
-        let area = s.dx * s.dz;
-        let mut y = FilmOutput::default();
-        for (k, (q, h)) in q.iter().zip(&gap.h).enumerate() {
-            let n = self.mesh.normals[k / self.mesh.n_z];
-            y.force_n[0] -= q * n[0] * area;
-            y.force_n[1] -= q * n[1] * area;
-            y.loss_w += s.eta * s.speed * s.speed * area / h;
-        }
-        y.dissipation_w = y.loss_w;
+    /// Where the oil goes, for a state and the rate of its content.
+    pub fn mass_balance(&self, site: &FilmSite, q: &[f64], rate: &[f64]) -> MassBalance {
+        let s = Scalars::of(&self.mesh, &site.input);
+        let (mut gap, mut cells, mut cover) = (Vec::new(), Vec::new(), Cover::default());
+        self.cells::<2>(site, q, &mut gap, &mut cells);
+        self.cover(site.journal_angle_rad, &mut cover);
+        let mut r = vec![0.0; q.len()];
+        self.balance(&cells, q, rate, &s, &mut r);
+        let copies = self.mesh.copies();
+        let supply: f64 = r.iter().zip(&cover.share).filter(|(_, m)| **m > 0.0).map(|(r, _)| r).sum();
+        let stored: f64 = rate.iter().map(|c| c * s.dx * s.dz).sum();
+        let mut side = 0.0;
         self.for_faces(|face| {
-            let (k, h) = self.conductance(&face, &gap.h, &s);
-            let drop = q[face.a] - face.b.map_or(self.side(), |b| q[b]);
-            y.dissipation_w += k * drop * drop;
-            if face.around {
-                y.loss_w -= s.speed / 2.0 * drop * h * s.dz;
-            }
             if face.b.is_none() {
-                y.side_flow_m3_s += k * drop;
+                side += self.sides(&face, &cells, q, s.speed).flow(false, &s).value;
             }
         });
-        y.times(self.mesh.copies());
-        y
-    }
-
-    /// `-sum q n` over the whole bearing: the force per cell area.
-    pub(super) fn moments(&self, q: &[f64]) -> [f64; 2] {
-        let mut m = [0.0; 2];
-        for (column, n) in q.chunks_exact(self.mesh.n_z).zip(&self.mesh.normals) {
-            let sum: f64 = column.iter().sum();
-            m[0] -= sum * n[0];
-            m[1] -= sum * n[1];
-        }
-        m.map(|m| m * self.mesh.copies())
-    }
-
-    /// Smooth maximum over the cells of `q`.
-    pub(super) fn peak(&self, q: &[f64]) -> PowerMean {
-        PowerMean::maximum(self.sharpness).of(q.iter().copied())
+        let [supply, side, stored] = [supply, side, stored].map(|v| v * copies);
+        MassBalance { supply, side, stored, error: supply - side - stored }
     }
 }

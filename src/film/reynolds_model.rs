@@ -1,121 +1,122 @@
-//! The Reynolds film as a [`FilmModel`]: equations of [`super::reynolds`], derivatives of [`super::reynolds_derivatives`].
+//! The Reynolds film as a [`FilmModel`].
 
-use super::fields::Scalars;
-use super::reynolds::{Cavitation, Reynolds};
-use super::reynolds_derivatives as derivatives;
-use super::{FilmInput, FilmModel, FilmOutput, Gap};
-use crate::math::Stencil;
+use super::reynolds::Reynolds;
+use super::{Cavitation, cells::Cell, cotangent, fields::Scalars, linearise, reynolds::Cover, tangent};
+use super::{
+    FilmChange, FilmCotangent, FilmLinear, FilmModel, FilmOutput, FilmPlace, FilmPoint, FilmSite,
+    FilmTangent, FilmWeights, Gap, Mesh, Wanted,
+};
 
-/// Pressure and slack below this share of the peak count as zero together.
+/// Pressure or void below this share of the peak counts as zero.
 const WEAK: f64 = 1e-7;
+/// Unknowns below this count as small when changes are judged, Pa.
+const SMALL_PRESSURE_PA: f64 = 1e5;
+
+impl Reynolds {
+    /// Gap and cells of a state.
+    fn evaluate(&self, site: &FilmSite, q: &[f64]) -> (Vec<f64>, Vec<Cell<2>>) {
+        let (mut gap, mut cells) = (Vec::new(), Vec::new());
+        self.cells(site, q, &mut gap, &mut cells);
+        (gap, cells)
+    }
+}
 
 impl FilmModel for Reynolds {
-    fn shape(&self) -> (usize, usize) {
-        (self.mesh.n_phi, self.mesh.n_z)
+    fn mesh(&self) -> Option<&Mesh> {
+        Some(&self.mesh)
     }
 
-    fn residual(&self, u: &FilmInput, q: &[f64], r: &mut [f64]) {
-        let gap = Gap::of(&self.mesh, u);
-        let mut diagonal = vec![0.0; q.len()];
-        self.outflow(u, q, &gap, r, &mut diagonal);
-        if self.cavitation == Cavitation::SwiftStieber {
-            for ((r, d), q) in r.iter_mut().zip(&diagonal).zip(q) {
-                *r = r.min(d * q);
-            }
-        }
-        for &(i, p) in &self.held_columns {
-            for k in i * self.mesh.n_z..(i + 1) * self.mesh.n_z {
-                r[k] = diagonal[k] * (q[k] - (p - self.cavitation_pressure_pa));
-            }
+    fn content(&self, site: &FilmSite, q: &[f64], content: &mut [f64]) {
+        let (_, cells) = self.evaluate(site, q);
+        for ((c, cell), q) in content.iter_mut().zip(&cells).zip(q) {
+            *c = self.cavitation.split(*q).fill * cell.content.v;
         }
     }
 
-    fn stencil(&self, u: &FilmInput, q: &[f64], a: &mut Stencil) {
-        let gap = Gap::of(&self.mesh, u);
-        self.fill_stencil(u, &gap, &self.is_passive(u, q, &gap), a);
+    fn residual(&self, site: &FilmSite, q: &[f64], rate: &[f64], r: &mut [f64]) {
+        let s = Scalars::of(&self.mesh, &site.input);
+        let (_, cells) = self.evaluate(site, q);
+        let mut cover = Cover::default();
+        self.cover(site.journal_angle_rad, &mut cover);
+        self.balance(&cells, q, rate, &s, r);
+        self.close_rows(&cover, q, &s, r);
     }
 
-    fn linearise(&self, u: &FilmInput, q: &[f64], dus: &[FilmInput], a: &mut Stencil, columns: &mut [f64]) {
-        let gap = Gap::of(&self.mesh, u);
-        let passive = self.is_passive(u, q, &gap);
-        self.fill_stencil(u, &gap, &passive, a);
-        derivatives::residual_tangents(self, u, q, &gap, &passive, dus, columns);
+    fn linearise(&self, site: &FilmSite, q: &[f64], alpha: f64, past: &[f64], into: &mut FilmLinear) {
+        linearise::linearise(self, site, q, alpha, past, into);
     }
 
-    fn residual_tangent(&self, u: &FilmInput, q: &[f64], du: &FilmInput, out: &mut [f64]) {
-        derivatives::residual_tangent(self, u, q, du, out);
+    fn output(&self, site: &FilmSite, q: &[f64]) -> FilmOutput {
+        let (gap, cells) = self.evaluate(site, q);
+        self.outputs(site, q, &gap, &cells)
     }
 
-    fn residual_cotangent(&self, u: &FilmInput, q: &[f64], lambda: &[f64]) -> FilmInput {
-        derivatives::residual_cotangent(self, u, q, lambda)
-    }
-
-    fn force_n(&self, u: &FilmInput, q: &[f64]) -> [f64; 2] {
-        let s = Scalars::of(&self.mesh, u);
-        self.moments(q).map(|m| m * s.dx * s.dz)
-    }
-
-    fn force_tangent(&self, u: &FilmInput, q: &[f64], du: &FilmInput) -> [f64; 2] {
-        let (s, d) = (Scalars::of(&self.mesh, u), Scalars::tangent(&self.mesh, u, du));
-        self.moments(q).map(|m| m * (d.dx * s.dz + s.dx * d.dz))
-    }
-
-    fn force_cotangent(&self, u: &FilmInput, q: &[f64], w: [f64; 2], q_bar: Option<&mut [f64]>) -> FilmInput {
-        let s = Scalars::of(&self.mesh, u);
-        let m = self.moments(q);
-        let along = w[0] * m[0] + w[1] * m[1];
-        let bar = Scalars { dx: along * s.dz, dz: along * s.dx, ..Default::default() };
-        let mut u_bar = FilmInput::default();
-        bar.pull_back(&self.mesh, u, &mut u_bar);
-        if let Some(q_bar) = q_bar {
-            let scale = s.dx * s.dz * self.mesh.copies();
-            for (column, n) in q_bar.chunks_exact_mut(self.mesh.n_z).zip(&self.mesh.normals) {
-                let add = -scale * (w[0] * n[0] + w[1] * n[1]);
-                column.iter_mut().for_each(|q| *q += add);
-            }
-        }
-        u_bar
-    }
-
-    fn output(&self, u: &FilmInput, q: &[f64]) -> FilmOutput {
-        let gap = Gap::of(&self.mesh, u);
-        FilmOutput {
-            gap_min_m: Gap::minimum_m(u),
-            pressure_peak_pa: self.peak(q).value() + self.cavitation_pressure_pa,
-            ..self.sums(u, q, &gap)
+    fn fix(&self, site: &FilmSite, q: &[f64], into: &mut FilmPoint) {
+        self.cells(site, q, &mut into.gap, &mut into.cells);
+        if into.cover.share.is_empty() || self.cover_turns() {
+            self.cover(site.journal_angle_rad, &mut into.cover);
         }
     }
 
-    fn output_tangent(&self, u: &FilmInput, q: &[f64], dq: &[f64], du: &FilmInput) -> FilmOutput {
-        derivatives::output_tangent(self, u, q, dq, du)
+    fn tangent_at(&self, place: &FilmPlace, change: &FilmChange, wanted: Wanted) -> FilmTangent {
+        tangent::tangent(self, place, change, wanted)
     }
 
-    fn output_cotangent(&self, u: &FilmInput, q: &[f64], w: &FilmOutput, q_bar: &mut [f64]) -> FilmInput {
-        derivatives::output_cotangent(self, u, q, w, q_bar)
+    fn cotangent_at(&self, place: &FilmPlace, weights: &FilmWeights) -> FilmCotangent {
+        cotangent::cotangent(self, place, weights)
     }
 
-    fn pressure_max_pa(&self, _: &FilmInput, q: &[f64]) -> f64 {
+    fn admissible(&self, site: &FilmSite, motion: [f64; 4], keep: f64) -> f64 {
+        let (u, depth) = (&site.input, self.lift_m());
+        if self.is_plain(site) {
+            let [x, y, ..] = motion;
+            return Gap::admissible(u.clearance_m + depth, u.eccentricity_m, [x, y], keep);
+        }
+        let mut h = vec![0.0; self.mesh.cells()];
+        Gap::fill(&self.mesh, site, &mut h);
+        Gap::admissible_cells(&self.mesh, u, &h, depth, &motion, keep)
+    }
+
+    fn contains(&self, site: &FilmSite) -> bool {
+        let (u, depth) = (&site.input, self.lift_m());
+        if self.is_plain(site) {
+            return Gap::minimum_m(u) + depth > 0.0;
+        }
+        let mut h = vec![0.0; self.mesh.cells()];
+        Gap::fill(&self.mesh, site, &mut h);
+        h.iter().all(|h| h + depth > 0.0)
+    }
+
+    fn change(&self, q: &[f64], dq: &[f64]) -> f64 {
+        let largest = |v: &[f64]| v.iter().fold(0.0f64, |a, q| a.max(q.abs()));
+        largest(dq) / largest(q).max(SMALL_PRESSURE_PA)
+    }
+
+    fn pressure_max_pa(&self, _: &FilmSite, q: &[f64]) -> f64 {
         self.peak(q).exact() + self.cavitation_pressure_pa
     }
 
-    fn weakly_active(&self, u: &FilmInput, q: &[f64]) -> usize {
-        if self.cavitation == Cavitation::None {
-            return 0;
-        }
-        let gap = Gap::of(&self.mesh, u);
-        let (mut r, mut d) = (vec![0.0; q.len()], vec![0.0; q.len()]);
-        self.outflow(u, q, &gap, &mut r, &mut d);
-        let top = self.peak(q).exact();
-        (0..q.len()).filter(|&k| q[k].abs().max(r[k].abs() / d[k]) <= WEAK * top).count()
+    fn contact_max_pa(&self, site: &FilmSite, q: &[f64]) -> f64 {
+        self.contact_peak(&self.evaluate(site, q).1).exact()
     }
 
-    fn pressure_map_pa(&self, _: &FilmInput, q: &[f64]) -> Vec<Vec<f64>> {
-        let p = |v: &f64| v + self.cavitation_pressure_pa;
-        q.chunks_exact(self.mesh.n_z)
-            .map(|half| match self.mesh.low_edge() {
-                true => half.iter().map(p).collect(),
-                false => half.iter().rev().chain(half).map(p).collect(),
-            })
-            .collect()
+    fn conserves_mass(&self) -> bool {
+        self.cavitation == Cavitation::MassConserving
+    }
+
+    fn least_fill(&self, q: &[f64]) -> f64 {
+        q.iter().map(|q| self.cavitation.split(*q).fill).fold(1.0, f64::min)
+    }
+
+    fn weakly_active(&self, q: &[f64]) -> usize {
+        self.weak_cells(q, WEAK)
+    }
+
+    fn pressure_map_pa(&self, _: &FilmSite, q: &[f64]) -> Vec<Vec<f64>> {
+        self.mesh.map(q.iter().map(|q| self.cavitation.load(*q).0 + self.cavitation_pressure_pa))
+    }
+
+    fn fill_map(&self, _: &FilmSite, q: &[f64]) -> Vec<Vec<f64>> {
+        self.mesh.map(q.iter().map(|q| self.cavitation.split(*q).fill))
     }
 }

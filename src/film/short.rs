@@ -14,8 +14,11 @@
 //!
 //! Valid for `L/D` up to about 1/2 at moderate eccentricity; an instant first answer elsewhere.
 
-use super::{FilmInput, FilmModel, FilmOutput, Gap};
-use crate::math::{PowerMean, Stencil};
+use super::{
+    FilmChange, FilmCotangent, FilmInput, FilmLinear, FilmModel, FilmOutput, FilmPlace, FilmPoint, FilmSite,
+    FilmTangent, FilmWeights, Gap, INPUTS, Mesh, Wanted,
+};
+use crate::math::PowerMean;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Points of the Gauss rule.
@@ -24,8 +27,6 @@ const NODES: usize = 32;
 const ANGLES: usize = 360;
 /// Share of the peak below which a pressure has no weight in the smooth maximum (sharpness 10 and more).
 const NEAR_PEAK: f64 = 0.02;
-/// Number of scalars in a [`FilmInput`].
-const INPUTS: usize = 9;
 
 /// Short-bearing film.
 #[derive(Debug, Clone)]
@@ -167,6 +168,7 @@ impl<'a> State<'a> {
             gap_min_m: Gap::minimum_m(u),
             pressure_peak_pa: self.peak.value(),
             side_flow_m3_s: u.width_m * u.diameter_m * self.speed,
+            ..Default::default()
         }
     }
 
@@ -200,6 +202,7 @@ impl<'a> State<'a> {
             pressure_peak_pa: self.peak_change(du, dv),
             side_flow_m3_s: u.width_m * u.diameter_m * d_speed
                 + (du.width_m * u.diameter_m + u.width_m * du.diameter_m) * self.speed,
+            ..Default::default()
         }
     }
 
@@ -254,29 +257,10 @@ fn mid_plane_change(u: &FilmInput, v: [f64; 2], du: &FilmInput, dv: [f64; 2], n:
         * (du.viscosity_pa_s / u.viscosity_pa_s + 2.0 * du.width_m / u.width_m + d_flow / flow - 3.0 * dh / h)
 }
 
-/// The input from numbers in a fixed order.
-fn input_from(a: &[f64; INPUTS]) -> FilmInput {
-    let [ex, ey, vx, vy, speed_rad_s, width_m, diameter_m, clearance_m, viscosity_pa_s] = *a;
-    FilmInput {
-        eccentricity_m: [ex, ey],
-        velocity_m_s: [vx, vy],
-        speed_rad_s,
-        width_m,
-        diameter_m,
-        clearance_m,
-        viscosity_pa_s,
-    }
-}
-
 fn unit_input(k: usize) -> FilmInput {
     let mut a = [0.0; INPUTS];
     a[k] = 1.0;
-    input_from(&a)
-}
-
-fn output_array(y: &FilmOutput) -> [f64; 7] {
-    let [fx, fy] = y.force_n;
-    [fx, fy, y.loss_w, y.dissipation_w, y.gap_min_m, y.pressure_peak_pa, y.side_flow_m3_s]
+    FilmInput::from_array(a)
 }
 
 /// Gauss-Legendre nodes and weights on [-1, 1] by Newton's method on the Legendre polynomial.
@@ -303,69 +287,96 @@ fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
 }
 
 impl FilmModel for ShortFilm {
-    fn shape(&self) -> (usize, usize) {
-        (0, 0)
+    fn mesh(&self) -> Option<&Mesh> {
+        None
     }
 
-    fn residual(&self, _: &FilmInput, _: &[f64], _: &mut [f64]) {}
+    fn content(&self, _: &FilmSite, _: &[f64], _: &mut [f64]) {}
 
-    fn stencil(&self, _: &FilmInput, _: &[f64], _: &mut Stencil) {}
+    fn residual(&self, _: &FilmSite, _: &[f64], _: &[f64], _: &mut [f64]) {}
 
-    fn residual_tangent(&self, _: &FilmInput, _: &[f64], _: &FilmInput, _: &mut [f64]) {}
-
-    fn residual_cotangent(&self, _: &FilmInput, _: &[f64], _: &[f64]) -> FilmInput {
-        FilmInput::default()
+    fn linearise(&self, site: &FilmSite, _: &[f64], alpha: f64, _: &[f64], into: &mut FilmLinear) {
+        let impedance = Impedance::at(self, &site.input);
+        into.loads = [impedance.force[0], impedance.force[1], 0.0, 0.0];
+        for (b, unit) in [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate() {
+            let du = FilmInput {
+                eccentricity_m: unit,
+                velocity_m_s: unit.map(|v| alpha * v),
+                ..Default::default()
+            };
+            let df = impedance.force_change(&site.input, &du);
+            (0..2).for_each(|a| into.corner[a][b] = df[a]);
+        }
     }
 
-    fn force_n(&self, u: &FilmInput, _: &[f64]) -> [f64; 2] {
-        Impedance::at(self, u).force
+    fn output(&self, site: &FilmSite, _: &[f64]) -> FilmOutput {
+        State::at(self, &site.input).output()
     }
 
-    fn force_tangent(&self, u: &FilmInput, _: &[f64], du: &FilmInput) -> [f64; 2] {
-        Impedance::at(self, u).force_change(u, du)
+    fn fix(&self, _: &FilmSite, _: &[f64], _: &mut FilmPoint) {}
+
+    fn tangent_at(&self, place: &FilmPlace, change: &FilmChange, _: Wanted) -> FilmTangent {
+        FilmTangent { output: State::at(self, &place.site.input).change(&change.input), ..Default::default() }
     }
 
-    fn force_cotangent(&self, u: &FilmInput, _: &[f64], w: [f64; 2], _: Option<&mut [f64]>) -> FilmInput {
-        let impedance = Impedance::at(self, u);
-        input_from(&std::array::from_fn(|k| {
-            let df = impedance.force_change(u, &unit_input(k));
-            w[0] * df[0] + w[1] * df[1]
-        }))
-    }
-
-    fn output(&self, u: &FilmInput, _: &[f64]) -> FilmOutput {
-        State::at(self, u).output()
-    }
-
-    fn output_tangent(&self, u: &FilmInput, _: &[f64], _: &[f64], du: &FilmInput) -> FilmOutput {
-        State::at(self, u).change(du)
-    }
-
-    fn output_cotangent(&self, u: &FilmInput, _: &[f64], w: &FilmOutput, _: &mut [f64]) -> FilmInput {
-        let (state, w) = (State::at(self, u), output_array(w));
-        input_from(&std::array::from_fn(|k| {
-            let change = output_array(&state.change(&unit_input(k)));
+    fn cotangent_at(&self, place: &FilmPlace, weights: &FilmWeights) -> FilmCotangent {
+        if weights.output == FilmOutput::default() {
+            return FilmCotangent::default();
+        }
+        let (state, w) = (State::at(self, &place.site.input), weights.output.to_array());
+        let by = |k: usize| {
+            let change = state.change(&unit_input(k)).to_array();
             change.iter().zip(w).map(|(j, w)| j * w).sum()
-        }))
+        };
+        FilmCotangent { input: FilmInput::from_array(std::array::from_fn(by)), ..Default::default() }
     }
 
-    fn pressure_max_pa(&self, u: &FilmInput, _: &[f64]) -> f64 {
-        let v = film_velocity(u);
-        self.normals.iter().map(|n| mid_plane(u, v, n)).fold(0.0, f64::max)
+    fn admissible(&self, site: &FilmSite, motion: [f64; 4], keep: f64) -> f64 {
+        let (u, [x, y, ..]) = (&site.input, motion);
+        Gap::admissible(u.clearance_m, u.eccentricity_m, [x, y], keep)
     }
 
-    fn weakly_active(&self, _: &FilmInput, _: &[f64]) -> usize {
+    fn contains(&self, site: &FilmSite) -> bool {
+        Gap::minimum_m(&site.input) > 0.0
+    }
+
+    fn change(&self, _: &[f64], _: &[f64]) -> f64 {
+        0.0
+    }
+
+    fn pressure_max_pa(&self, site: &FilmSite, _: &[f64]) -> f64 {
+        let v = film_velocity(&site.input);
+        self.normals.iter().map(|n| mid_plane(&site.input, v, n)).fold(0.0, f64::max)
+    }
+
+    fn contact_max_pa(&self, _: &FilmSite, _: &[f64]) -> f64 {
+        0.0
+    }
+
+    fn conserves_mass(&self) -> bool {
+        false
+    }
+
+    fn least_fill(&self, _: &[f64]) -> f64 {
+        1.0
+    }
+
+    fn weakly_active(&self, _: &[f64]) -> usize {
         0
     }
 
-    fn pressure_map_pa(&self, u: &FilmInput, _: &[f64]) -> Vec<Vec<f64>> {
+    fn pressure_map_pa(&self, site: &FilmSite, _: &[f64]) -> Vec<Vec<f64>> {
         const ACROSS: usize = 16;
-        let v = film_velocity(u);
+        let (u, v) = (&site.input, film_velocity(&site.input));
         let share = |j: usize| 2.0 * (j as f64 + 0.5) / ACROSS as f64 - 1.0;
         self.normals
             .iter()
             .map(|n| (0..ACROSS).map(|j| mid_plane(u, v, n) * (1.0 - share(j).powi(2))).collect())
             .collect()
+    }
+
+    fn fill_map(&self, _: &FilmSite, _: &[f64]) -> Vec<Vec<f64>> {
+        Vec::new()
     }
 }
 

@@ -1,0 +1,209 @@
+//! The film linearised for Newton's method: residual, stencil, columns by the journal's motion, rows of the loads.
+//!
+//! With the content's rate `alpha c + past`, the residual depends on `q` and the motion `x` directly and through the
+//! content. Nothing is allocated once a [`FilmLinear`] has its size.
+
+use super::cavitation::Cavitation;
+use super::cells::Cell;
+use super::faces::Face;
+use super::fields::Scalars;
+use super::gap::Modes;
+use super::reynolds::{Cover, Reynolds};
+use super::{Axial, FilmSite};
+use crate::math::Stencil;
+
+/// Result and workspace of a linearisation.
+#[derive(Debug, Clone)]
+pub struct FilmLinear {
+    /// Number of motions that are unknowns: 2 (eccentricity) or 4 (and tilt).
+    pub motions: usize,
+    /// Oil content of every cell, m.
+    pub content: Vec<f64>,
+    /// Residual.
+    pub residual: Vec<f64>,
+    /// Derivative of the residual by the unknowns.
+    pub stencil: Stencil,
+    /// Derivatives of the residual by the motions, one column each.
+    pub columns: Vec<f64>,
+    /// Derivatives of the loads by the unknowns, one row each.
+    pub rows: Vec<f64>,
+    /// Loads: force and moment on the journal.
+    pub loads: [f64; 4],
+    /// Derivatives of the loads by the motions.
+    pub corner: [[f64; 4]; 4],
+    gap: Vec<f64>,
+    rate: Vec<f64>,
+    cells: Vec<Cell<2>>,
+    cover: Cover,
+    covered: bool,
+}
+
+impl FilmLinear {
+    /// Room for a film of `n` unknowns.
+    pub fn new(n: usize, motions: usize) -> Self {
+        assert!(motions == 2 || motions == 4, "a journal moves in 2 or 4 ways");
+        Self {
+            motions,
+            content: vec![0.0; n],
+            residual: vec![0.0; n],
+            stencil: Stencil::zeros(n),
+            columns: vec![0.0; n * motions],
+            rows: vec![0.0; n * motions],
+            loads: [0.0; 4],
+            corner: [[0.0; 4]; 4],
+            gap: Vec::with_capacity(n),
+            rate: vec![0.0; n],
+            cells: Vec::with_capacity(n),
+            cover: Cover::default(),
+            covered: false,
+        }
+    }
+}
+
+pub(super) fn linearise(
+    film: &Reynolds,
+    site: &FilmSite,
+    q: &[f64],
+    alpha: f64,
+    past: &[f64],
+    into: &mut FilmLinear,
+) {
+    let s = Scalars::of(&film.mesh, &site.input);
+    film.cells(site, q, &mut into.gap, &mut into.cells);
+    if !into.covered || film.cover_turns() {
+        film.cover(site.journal_angle_rad, &mut into.cover);
+        into.covered = true;
+    }
+    for (k, cell) in into.cells.iter().enumerate() {
+        into.content[k] = film.cavitation.split(q[k]).fill * cell.content.v;
+        into.rate[k] = alpha * into.content[k] + past.get(k).copied().unwrap_or(0.0);
+    }
+    film.balance(&into.cells, q, &into.rate, &s, &mut into.residual);
+    into.stencil.clear();
+    into.columns.fill(0.0);
+    let mut work = Assembly { film, site, q, s: &s, into: &mut *into };
+    work.storage(alpha);
+    film.for_faces(|face| work.face(face));
+    work.close_rows();
+    work.loads();
+    film.close_rows(&into.cover, q, &s, &mut into.residual);
+}
+
+struct Assembly<'a> {
+    film: &'a Reynolds,
+    site: &'a FilmSite<'a>,
+    q: &'a [f64],
+    s: &'a Scalars,
+    into: &'a mut FilmLinear,
+}
+
+impl Assembly<'_> {
+    fn modes(&self, k: usize) -> [f64; 4] {
+        let (mesh, n_z) = (&self.film.mesh, self.film.mesh.n_z);
+        Modes::at(mesh, &self.site.input, k / n_z).of(mesh.zetas[k % n_z])
+    }
+
+    /// Share of the content's rate.
+    fn storage(&mut self, alpha: f64) {
+        let scale = alpha * self.s.dx * self.s.dz;
+        let n = self.q.len();
+        for k in 0..n {
+            let (split, content) = (self.film.cavitation.split(self.q[k]), self.into.cells[k].content);
+            self.into.stencil.diagonal[k] =
+                scale * (split.fill_slope * content.v + split.fill * content.d[1] * split.p_slope);
+            let by_gap = scale * split.fill * content.d[0];
+            let modes = self.modes(k);
+            for (a, mode) in modes.iter().enumerate().take(self.into.motions) {
+                self.into.columns[a * n + k] = by_gap * mode;
+            }
+        }
+    }
+
+    /// Flow through a face: into the stencil and the columns of its two cells.
+    fn face(&mut self, face: Face) {
+        let film = self.film;
+        let flow = film.sides(&face, &self.into.cells, self.q, self.s.speed).flow(face.around, self.s);
+        let resistance = |c: &Cell<2>| if face.around { c.around } else { c.across };
+        let upstream = self.s.speed >= 0.0;
+        let by = |k: usize, side: usize, sign: f64| {
+            let (cell, split) = (&self.into.cells[k], film.cavitation.split(self.q[k]));
+            let local = |slot: usize| {
+                flow.by_resistance[side] * resistance(cell).d[slot]
+                    + flow.by_thickness[side] * cell.transport.d[slot]
+            };
+            let carried = if (side == 0) == upstream { flow.by_fill * split.fill_slope } else { 0.0 };
+            ((sign * flow.by_drop + local(1)) * split.p_slope + carried, local(0))
+        };
+        let (qa, ha) = by(face.a, 0, 1.0);
+        let other = face.b.map(|b| (b, by(b, 1, -1.0)));
+        let (a, n) = (face.a, self.q.len());
+        self.into.stencil.diagonal[a] += qa;
+        let near = self.modes(a);
+        let far = other.map(|(b, (_, hb))| self.modes(b).map(|m| m * hb));
+        for m in 0..self.into.motions {
+            let change = ha * near[m] + far.map_or(0.0, |f| f[m]);
+            self.into.columns[m * n + a] += change;
+            if let Some(b) = face.b {
+                self.into.columns[m * n + b] -= change;
+            }
+        }
+        if let Some((b, (qb, _))) = other {
+            let stencil = &mut self.into.stencil;
+            stencil.diagonal[b] -= qb;
+            if face.around {
+                stencil.east[a] += qb;
+                stencil.west[b] -= qa;
+            } else {
+                stencil.north[a] += qb;
+                stencil.south[b] -= qa;
+            }
+        }
+    }
+
+    /// Covered and slack cells.
+    fn close_rows(&mut self) {
+        let (tie, n) = (Reynolds::tie(self.s), self.q.len());
+        let slack = self.film.cavitation == Cavitation::SwiftStieber;
+        for k in 0..n {
+            let m = self.into.cover.share[k];
+            if m > 0.0 {
+                let stencil = &mut self.into.stencil;
+                let sides = [
+                    &mut stencil.diagonal,
+                    &mut stencil.west,
+                    &mut stencil.east,
+                    &mut stencil.south,
+                    &mut stencil.north,
+                ];
+                sides.into_iter().for_each(|side| side[k] *= 1.0 - m);
+                self.into.stencil.diagonal[k] += m * tie * self.film.cavitation.split(self.q[k]).p_slope;
+                (0..self.into.motions).for_each(|a| self.into.columns[a * n + k] *= 1.0 - m);
+            }
+            if slack && self.q[k] < 0.0 {
+                self.into.stencil.diagonal[k] += tie;
+            }
+        }
+    }
+
+    fn loads(&mut self) {
+        let area = self.s.dx * self.s.dz * self.film.mesh.copies();
+        let (n, d) = (self.q.len(), self.into.motions);
+        let (mut loads, mut corner) = ([0.0; 4], [[0.0; 4]; 4]);
+        for k in 0..n {
+            let (p, slope) = self.film.cavitation.load(self.q[k]);
+            let (modes, contact) = (self.modes(k), self.into.cells[k].contact);
+            for a in 0..d {
+                loads[a] += (p + contact.v) * modes[a] * area;
+                self.into.rows[a * n + k] = slope * modes[a] * area;
+                if contact.d[0] != 0.0 {
+                    (0..d).for_each(|b| corner[a][b] += contact.d[0] * modes[a] * modes[b] * area);
+                }
+            }
+        }
+        if self.film.mesh.axial == Axial::Half {
+            debug_assert!(d == 2, "a tilting journal needs a mesh over the whole width");
+        }
+        self.into.loads = loads;
+        self.into.corner = corner;
+    }
+}
