@@ -1,15 +1,20 @@
 //! The ladder of abilities of a periodic, parameter-dependent, implicit differential-algebraic system.
 //!
 //! ```text
-//! F(t, z, z'; p) = 0,   z(t + T) = z(t),        outputs  y = g(t, z, z'; p)
+//! F(t, z, m'; p) = 0,   m = M(t, z; p),   z(t + T) = z(t),        outputs  y = g(t, z, m'; p)
 //! ```
 //!
+//! The *memory* `m` is what the system remembers: positions, velocities, the oil content of a cell (a function of fill
+//! and gap). Only its rate enters, so a balance written with it is conserved by any difference formula to rounding.
 //! A model climbs as far as it needs: [`Dae`] can be evaluated, [`LinearisedDae`] can be stepped implicitly,
 //! [`SensitiveDae`] can be differentiated forwards and backwards. The orbit and gradient floors work on these traits
 //! and know no state by name, so a bearing, a train of bearings or a user's own model get the same treatment.
 //!
+//! **Cycle unknowns** are numbers that are constant over the cycle but not given (the temperature of a film): the last
+//! of the parameters, with one equation each between the cycle means of the outputs, `R(mean y, p) = 0`.
+//!
 //! Derivatives leave as products with vectors, never as full matrices: `F_p` may have hundreds of columns.
-//! Deliberately not here: how `z'` is discretised (see [`crate::orbit`]).
+//! Deliberately not here: how `m'` is discretised (see [`crate::orbit`]).
 
 use crate::math::Singular;
 use thiserror::Error;
@@ -23,9 +28,9 @@ pub struct InvalidParameters(pub String);
 pub trait Dae: Send + Sync {
     /// Length of `z`.
     fn states(&self) -> usize;
-    /// Indices of the states that enter `F` with their rate. The rest has no memory.
-    fn memory(&self) -> &[usize];
-    /// The parameters `p` at which this model stands, SI units.
+    /// Length of `m`.
+    fn memories(&self) -> usize;
+    /// The parameters `p` at which this model stands, SI units; cycle unknowns come last.
     fn parameters(&self) -> &[f64];
     /// Length of the period in seconds.
     fn period_s(&self) -> f64;
@@ -33,46 +38,100 @@ pub trait Dae: Send + Sync {
     fn outputs(&self) -> usize;
     /// A state to start the transient from.
     fn cold_start(&self) -> Vec<f64>;
-    /// Writes `F(t, z, z')` to `residual`.
+    /// Writes `M(t, z)`.
+    fn memory(&self, t_s: f64, z: &[f64], m: &mut [f64]);
+    /// Writes `F(t, z, m')` to `residual`.
     fn residual(&self, at: At, residual: &mut [f64]);
     /// Writes the outputs to `y`.
     fn output(&self, at: At, y: &mut [f64]);
     /// Size of a change `dz` of the state in units in which 1 is a change of order one.
     fn change(&self, z: &[f64], dz: &[f64]) -> f64;
+    /// Size of a change of the memory in the same units.
+    fn memory_change(&self, dm: &[f64]) -> f64;
     /// The same model at other parameters.
     fn with_parameters(&self, p: &[f64]) -> Result<Self, InvalidParameters>
     where
         Self: Sized;
+    /// Equations of the cycle unknowns; none by default.
+    fn cycle(&self) -> Option<&dyn CycleEquations> {
+        None
+    }
+}
+
+/// Equations `R(mean y, p) = 0` that fix the last parameters.
+pub trait CycleEquations: Send + Sync {
+    /// Number of cycle unknowns.
+    fn unknowns(&self) -> usize;
+    /// Outputs whose cycle means enter.
+    fn outputs(&self) -> Vec<usize>;
+    /// `R`, given the means in the order of [`Self::outputs`].
+    fn residual(&self, means: &[f64], p: &[f64]) -> Vec<f64>;
+    /// `dR/dmean` and `dR/dp`, one row per equation.
+    fn slopes(&self, means: &[f64], p: &[f64]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>);
+    /// A first guess of `dR/dunknown` in total, one row per equation: how the means answer included.
+    fn guess(&self, means: &[f64], p: &[f64]) -> Vec<Vec<f64>>;
+    /// Size of a change of each unknown that counts as order one.
+    fn scale(&self) -> Vec<f64>;
 }
 
 /// A system whose steps can be solved by Newton's method.
 pub trait LinearisedDae: Dae {
-    /// Factors of `F_z + alpha F_z'`, with their workspace.
+    /// Factors of `F_z + alpha F_m' M_z`, with their workspace.
     type Factors: Send;
     /// Room for factors.
     fn factors(&self) -> Self::Factors;
-    /// Factorises `F_z + alpha F_z'` at the given point.
-    fn factor(&self, at: At, alpha: f64, into: &mut Self::Factors) -> Result<(), Singular>;
+    /// Writes memory and residual at the rate `alpha M(t, z) + past` and factorises `F_z + alpha F_m' M_z` there.
+    fn linearise(
+        &self,
+        step: Step,
+        memory: &mut [f64],
+        residual: &mut [f64],
+        into: &mut Self::Factors,
+    ) -> Result<(), Singular>;
     /// Replaces each column of `rhs` by the solution with the factorised matrix.
-    fn solve(&self, factors: &Self::Factors, rhs: &mut [f64]);
+    fn solve(&self, factors: &mut Self::Factors, rhs: &mut [f64]);
+    /// Continues the last step: changes the state `z` (the last one) towards a guess of the next, given the one before
+    /// it. By default the last state is the guess.
+    fn predict(&self, _before: &[f64], _z: &mut [f64]) {}
+    /// Improves the guess `step.z`, handed over in `z`, by whatever the model knows about itself; whether it found one.
+    /// Called where Newton's method fails. The step is solved by the stepper all the same.
+    fn rescue(&self, _step: Step, _z: &mut [f64]) -> bool {
+        false
+    }
     /// Whether the model is defined at a state.
     fn contains(&self, z: &[f64]) -> bool;
     /// Largest fraction of the Newton step `dz` that stays where the model is defined, at most 1.
     fn admissible(&self, z: &[f64], dz: &[f64]) -> f64;
+    /// Adds a share of a Newton step to the state. A piecewise smooth model may stop parts of it where their piece ends.
+    fn advance(&self, z: &mut [f64], dz: &[f64], share: f64) {
+        z.iter_mut().zip(dz).for_each(|(z, d)| *z += share * d);
+    }
 }
 
 /// A system that can be differentiated by states, rates and parameters, in both directions.
 pub trait SensitiveDae: LinearisedDae {
+    /// What the derivatives at one point of a trajectory rest on, so that many of them share its evaluation; `()` will do.
+    type Point: Send;
+    /// Room for a point.
+    fn point(&self) -> Self::Point;
+    /// Evaluates a point.
+    fn fix(&self, at: At, into: &mut Self::Point);
+    /// Factorises `F_z + alpha F_m' M_z` at a point of a trajectory.
+    fn factor(&self, at: At, alpha: f64, into: &mut Self::Factors) -> Result<(), Singular>;
     /// Replaces each column of `rhs` by the solution with the transposed matrix.
-    fn solve_transposed(&self, factors: &Self::Factors, rhs: &mut [f64]);
-    /// `out += F_z' rate + F_p dp`.
-    fn times(&self, at: At, rate: &[f64], dp: &[f64], out: &mut [f64]);
-    /// `rate += F_z'^T v` and `p += F_p^T v`.
-    fn transposed_times(&self, at: At, v: &[f64], rate: &mut [f64], p: &mut [f64]);
-    /// Writes `dy = g_z dz + g_z' drate + g_p dp`.
-    fn output_tangent(&self, at: At, direction: Direction, dy: &mut [f64]);
-    /// Adds `g_z^T w`, `g_z'^T w` and `g_p^T w` to the three parts of `out`.
-    fn output_cotangent(&self, at: At, w: &[f64], out: Cotangent);
+    fn solve_transposed(&self, factors: &mut Self::Factors, rhs: &mut [f64]);
+    /// `out += F_m' rate + F_p dp`.
+    fn times(&self, point: &Self::Point, at: At, rate: &[f64], dp: &[f64], out: &mut [f64]);
+    /// `rate += F_m'^T v` and `p += F_p^T v`.
+    fn transposed_times(&self, point: &Self::Point, at: At, v: &[f64], rate: &mut [f64], p: &mut [f64]);
+    /// Writes `dm = M_z dz + M_p dp`.
+    fn memory_tangent(&self, point: &Self::Point, at: At, dz: &[f64], dp: &[f64], dm: &mut [f64]);
+    /// Adds `M_z^T w` to `z_bar` and `M_p^T w` to `p_bar`.
+    fn memory_cotangent(&self, point: &Self::Point, at: At, w: &[f64], z_bar: &mut [f64], p_bar: &mut [f64]);
+    /// Writes `dy = g_z dz + g_m' drate + g_p dp`.
+    fn output_tangent(&self, point: &Self::Point, at: At, direction: Direction, dy: &mut [f64]);
+    /// Adds `g_z^T w`, `g_m'^T w` and `g_p^T w` to the three parts of `out`.
+    fn output_cotangent(&self, point: &Self::Point, at: At, w: &[f64], out: Cotangent);
 }
 
 /// A point of a trajectory.
@@ -82,8 +141,21 @@ pub struct At<'a> {
     pub t_s: f64,
     /// State.
     pub z: &'a [f64],
-    /// Rate of the state.
+    /// Rate of the memory.
     pub rate: &'a [f64],
+}
+
+/// A point of an implicit step: the rate follows from the state.
+#[derive(Debug, Clone, Copy)]
+pub struct Step<'a> {
+    /// Time in seconds.
+    pub t_s: f64,
+    /// State.
+    pub z: &'a [f64],
+    /// Weight of the new memory in its rate, 1/s.
+    pub alpha: f64,
+    /// Share of the older memories in the rate.
+    pub past: &'a [f64],
 }
 
 /// A direction in states, rates and parameters.
@@ -91,7 +163,7 @@ pub struct At<'a> {
 pub struct Direction<'a> {
     /// Change of the state.
     pub z: &'a [f64],
-    /// Change of the rate.
+    /// Change of the rate of the memory.
     pub rate: &'a [f64],
     /// Change of the parameters.
     pub p: &'a [f64],
@@ -102,7 +174,7 @@ pub struct Direction<'a> {
 pub struct Cotangent<'a> {
     /// By states.
     pub z: &'a mut [f64],
-    /// By rates.
+    /// By rates of the memory.
     pub rate: &'a mut [f64],
     /// By parameters.
     pub p: &'a mut [f64],

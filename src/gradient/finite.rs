@@ -53,9 +53,10 @@ impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
         of: &[Quantity],
         cancel: &Cancel,
     ) -> Result<GradientTable, GradientError> {
-        let p = model.parameters();
+        let p = &at.parameters;
+        let varied = p.len() - model.cycle().map_or(0, |c| c.unknowns());
         let mut table = GradientTable {
-            rows: vec![vec![0.0; p.len()]; of.len()],
+            rows: vec![vec![0.0; varied]; of.len()],
             sweeps: 0.0,
             closure: 0.0,
             cost: Cost::default(),
@@ -69,7 +70,7 @@ impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
             return Ok(table);
         }
         let here: Vec<f64> = of.iter().map(|q| at.value(q)).collect();
-        for j in 0..p.len() {
+        for j in 0..varied {
             let step = self.perturbation * if p[j] != 0.0 { p[j].abs() } else { 1.0 };
             let mut settled = |sign: f64| -> Result<Vec<f64>, GradientError> {
                 let mut shifted = p.to_vec();

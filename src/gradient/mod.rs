@@ -15,14 +15,14 @@
 //! Deliberately not here: which parameters and quantities a study asks for.
 
 mod adjoint;
+mod balanced;
 mod finite;
 mod taylor;
 mod transient;
 
-pub use adjoint::Adjoint;
+pub use balanced::{Adjoint, Transient};
 pub use finite::{Difference, FiniteDifference};
 pub use taylor::{TaylorRow, taylor_table, verdict};
-pub use transient::Transient;
 
 use crate::dae::{InvalidParameters, SensitiveDae};
 use crate::math::Singular;
@@ -105,6 +105,9 @@ pub enum GradientError {
     /// A step matrix collapsed.
     #[error(transparent)]
     Singular(#[from] Singular),
+    /// The cycle unknowns do not answer to the parameters: their equations are singular.
+    #[error("the balance over the cycle (film temperature) is singular here")]
+    Unbalanced,
     /// The memory of the orbit does not fade.
     #[error(
         "the sensitivity does not become periodic within {0} sweeps: the orbit is hardly stable; raise orbit.max_cycles"
@@ -135,8 +138,8 @@ pub trait GradientEngine<M: SensitiveDae>: Send + Sync {
 trait Sweep {
     /// Takes the step at `n`; a forced step adds its own share, any other only carries memory on. Returns the memory's size.
     fn step(&mut self, n: usize, forced: bool) -> Result<f64, GradientError>;
-    /// Rows and cost gathered so far.
-    fn result(self) -> (Vec<Vec<f64>>, Cost);
+    /// What was gathered so far.
+    fn result(self, closure: &Closure, sweeps: f64) -> GradientTable;
 }
 
 /// One forced sweep in the order given, then sweeps that carry the memory alone until it has faded.
@@ -154,13 +157,7 @@ fn sweep_until_closed(
             closure.note(sweep.step(n, pass == 0)?);
             taken += 1;
             if pass > 0 && closure.left() <= CLOSED {
-                let (rows, cost) = sweep.result();
-                return Ok(GradientTable {
-                    rows,
-                    sweeps: taken as f64 / options.steps as f64,
-                    closure: closure.left(),
-                    cost,
-                });
+                return Ok(sweep.result(&closure, taken as f64 / options.steps as f64));
             }
         }
     }

@@ -38,7 +38,7 @@ pub fn taylor_table<M: SensitiveDae>(
     (first, count): (f64, usize),
     cancel: &Cancel,
 ) -> Result<Vec<Vec<TaylorRow>>, GradientError> {
-    let p = model.parameters();
+    let p = &at.parameters;
     let smallest = first / (1u64 << count.max(1)) as f64;
     let options = &tight(options, smallest);
     let base = settle(model, options, Some(at), cancel)?;
@@ -46,7 +46,8 @@ pub fn taylor_table<M: SensitiveDae>(
     let mut tables: Vec<Vec<TaylorRow>> = vec![Vec::new(); of.len()];
     for k in 0..count {
         let step = first / (1u64 << k) as f64;
-        let shifted: Vec<f64> = p.iter().zip(&d).map(|(p, d)| p + step * d).collect();
+        let shifted: Vec<f64> =
+            p.iter().enumerate().map(|(j, p)| p + d.get(j).map_or(0.0, |d| step * d)).collect();
         let orbit = settle(&model.with_parameters(&shifted)?, options, Some(at), cancel)?;
         for ((table, quantity), row) in tables.iter_mut().zip(of).zip(&gradient.rows) {
             let here = base.value(quantity);

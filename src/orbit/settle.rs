@@ -1,13 +1,11 @@
-//! Marching to the periodic orbit.
+//! The settled cycle and how it is found.
 
-use super::step::Stepper;
+use super::balance::settle_balanced;
+use super::march::March;
 use super::{Quantity, Scheme};
-use crate::dae::{At, Dae, LinearisedDae};
+use crate::dae::{Dae, InvalidParameters, LinearisedDae};
 use crate::run::{Cancel, Cancelled, Cost};
 use thiserror::Error;
-
-/// Steps between two looks at the cancel flag.
-const CANCEL_EVERY: usize = 16;
 
 /// How a cycle is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,6 +41,19 @@ pub enum OrbitError {
         /// Difference of the last two.
         residual: f64,
     },
+    /// The cycle unknowns do not settle.
+    #[error(
+        "the balance over the cycle (film temperature) did not close within {rounds} rounds: {residual:.2e} left"
+    )]
+    NotBalanced {
+        /// Cycles settled.
+        rounds: usize,
+        /// Last change of the unknowns, in units of their scale.
+        residual: f64,
+    },
+    /// The cycle unknowns ran to values at which the model does not exist.
+    #[error("the balance over the cycle (film temperature) has no solution: {0}")]
+    Parameters(#[from] InvalidParameters),
     /// Stopped from outside.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -55,12 +66,16 @@ pub struct Orbit {
     pub scheme: Scheme,
     /// Step length, s.
     pub dt_s: f64,
+    /// Parameters of the model that was settled, its cycle unknowns at the end.
+    pub parameters: Vec<f64>,
     /// States at `t = n dt`.
     pub states: Vec<Vec<f64>>,
     /// Outputs at the same times.
     pub outputs: Vec<Vec<f64>>,
     /// Difference between the last two passes where marching stopped.
     pub periodicity: f64,
+    /// Last change of the cycle unknowns in units of their scale; 0 without any.
+    pub balance: f64,
     /// Cycles marched, a fraction.
     pub cycles: f64,
     /// Work done.
@@ -84,20 +99,54 @@ impl Orbit {
         &self.states[(n + count - back) % count]
     }
 
-    /// Writes the rate at step `n`.
-    pub fn rate(&self, model: &impl Dae, n: usize, rate: &mut [f64]) {
-        let newest = [self.state(n, 0), self.state(n, 1), self.state(n, 2)];
-        self.scheme.rate(model, self.dt_s, newest, rate);
+    /// Rates of the memory at all steps.
+    pub fn rates(&self, model: &impl Dae) -> Vec<Vec<f64>> {
+        let (count, a) = (self.steps(), self.scheme.rates(self.dt_s));
+        let memory = |n: usize| {
+            let mut m = vec![0.0; model.memories()];
+            model.memory(self.time_s(n), &self.states[n], &mut m);
+            m
+        };
+        let all: Vec<Vec<f64>> = (0..count).map(memory).collect();
+        let rate = |n: usize| {
+            let [new, last, before] = [0, 1, 2].map(|back| &all[(n + count - back) % count]);
+            (0..new.len()).map(|i| a[0] * new[i] + a[1] * last[i] + a[2] * before[i]).collect()
+        };
+        (0..count).map(rate).collect()
     }
 
     /// Value of a quantity.
     pub fn value(&self, quantity: &Quantity) -> f64 {
         quantity.value(&self.outputs)
     }
+
+    /// Mean of an output over the cycle.
+    pub fn mean(&self, output: usize) -> f64 {
+        self.outputs.iter().map(|y| y[output]).sum::<f64>() / self.steps() as f64
+    }
+
+    /// The model that this is the cycle of: `model` with the cycle unknowns that were found.
+    pub fn model<M: Dae>(&self, model: &M) -> Result<M, InvalidParameters> {
+        model.with_parameters(&self.parameters)
+    }
 }
 
-/// Marches `model` until its cycle repeats, from a cold start or from the cycle of a similar model.
+/// Marches `model` until its cycle repeats, from a cold start or from the cycle of a similar model, and finds its cycle
+/// unknowns, if it has any.
 pub fn settle<M: LinearisedDae>(
+    model: &M,
+    options: &OrbitOptions,
+    start: Option<&Orbit>,
+    cancel: &Cancel,
+) -> Result<Orbit, OrbitError> {
+    if model.cycle().is_some() {
+        return settle_balanced(model, options, start, cancel);
+    }
+    settle_fixed(model, options, start, cancel)
+}
+
+/// The settled cycle at given cycle unknowns.
+pub(super) fn settle_fixed<M: LinearisedDae>(
     model: &M,
     options: &OrbitOptions,
     start: Option<&Orbit>,
@@ -106,109 +155,4 @@ pub fn settle<M: LinearisedDae>(
     let mut march = March::new(model, options, start);
     march.run(cancel)?;
     Ok(march.finish())
-}
-
-struct March<'m, M: LinearisedDae> {
-    model: &'m M,
-    options: OrbitOptions,
-    dt_s: f64,
-    stepper: Stepper<'m, M>,
-    /// States of the pass in progress and, ahead of it, of the pass before (or of the similar model).
-    states: Vec<Vec<f64>>,
-    /// Whether `states` ahead of the march may serve as guesses.
-    warm: bool,
-    taken: usize,
-    periodicity: f64,
-}
-
-impl<'m, M: LinearisedDae> March<'m, M> {
-    fn new(model: &'m M, options: &OrbitOptions, start: Option<&Orbit>) -> Self {
-        let dt_s = model.period_s() / options.steps as f64;
-        let similar = start.filter(|o| o.steps() == options.steps && o.states[0].len() == model.states());
-        let (states, warm) = match similar {
-            Some(orbit) if orbit.states.iter().all(|z| model.contains(z)) => (orbit.states.clone(), true),
-            _ => (vec![model.cold_start(); options.steps], false),
-        };
-        let stepper = Stepper::new(model, options.scheme, dt_s);
-        Self { model, options: *options, dt_s, stepper, states, warm, taken: 0, periodicity: f64::INFINITY }
-    }
-
-    fn run(&mut self, cancel: &Cancel) -> Result<(), OrbitError> {
-        let count = self.options.steps;
-        let mut close = 0;
-        while close < 2 {
-            if self.taken.is_multiple_of(CANCEL_EVERY) {
-                cancel.check()?;
-            }
-            if self.taken >= count * self.options.max_cycles {
-                return Err(OrbitError::NotPeriodic {
-                    cycles: self.options.max_cycles,
-                    residual: self.periodicity,
-                });
-            }
-            let difference = self.advance()?;
-            // Only a full cycle has left every start behind.
-            let settled = self.taken > count && difference <= self.options.periodicity_tolerance;
-            close = if settled { close + 1 } else { 0 };
-            self.periodicity = if close == 2 { self.periodicity.max(difference) } else { difference };
-        }
-        Ok(())
-    }
-
-    /// Takes one step and returns how far its result is from the state of the pass before.
-    fn advance(&mut self) -> Result<f64, OrbitError> {
-        let count = self.options.steps;
-        let n = self.taken % count;
-        let last = self.states[(n + count - 1) % count].clone();
-        let before = self.states[(n + count - 2) % count].clone();
-        let mut z = self.guess(n, &last, &before);
-        let t_s = n as f64 * self.dt_s;
-        self.stepper.step(t_s, &mut z, &last, &before).ok_or(OrbitError::StepFailed {
-            at_share: n as f64 / count as f64,
-            cycle: self.taken / count + 1,
-        })?;
-        let mut difference = vec![0.0; z.len()];
-        for &i in self.model.memory() {
-            difference[i] = z[i] - self.states[n][i];
-        }
-        let difference = self.model.change(&z, &difference);
-        self.states[n] = z;
-        self.taken += 1;
-        Ok(difference)
-    }
-
-    /// The state of the pass before, or the last step continued.
-    fn guess(&self, n: usize, last: &[f64], before: &[f64]) -> Vec<f64> {
-        if self.warm || self.taken > self.options.steps {
-            return self.states[n].clone();
-        }
-        let mut step = vec![0.0; last.len()];
-        for &i in self.model.memory() {
-            step[i] = last[i] - before[i];
-        }
-        let share = self.model.admissible(last, &step);
-        last.iter().zip(&step).map(|(z, s)| z + share * s).collect()
-    }
-
-    fn finish(self) -> Orbit {
-        let count = self.options.steps;
-        let cost = Cost { simulations: 1, ..self.stepper.cost };
-        let mut orbit = Orbit {
-            scheme: self.options.scheme,
-            dt_s: self.dt_s,
-            states: self.states,
-            outputs: Vec::with_capacity(count),
-            periodicity: self.periodicity,
-            cycles: self.taken as f64 / count as f64,
-            cost,
-        };
-        let mut rate = vec![0.0; self.model.states()];
-        for n in 0..count {
-            orbit.rate(self.model, n, &mut rate);
-            let mut y = vec![0.0; self.model.outputs()];
-            self.model.output(At { t_s: orbit.time_s(n), z: &orbit.states[n], rate: &rate }, &mut y);
-            orbit.outputs.push(y);
-        }
-        orbit
-    }
 }

@@ -1,111 +1,186 @@
-//! One implicit step: Newton's method on `F(t_n, z_n, z'_n) = 0`.
+//! One implicit step: Newton's method on `F(t_n, z_n, m'_n) = 0`.
 //!
 //! The step is damped only as far as the model needs to stay defined. If Newton fails from the guess, the way from the
 //! last state to the new one is walked in short implicit Euler steps to find a better one; the equation that is solved in
-//! the end stays the same, so the result does not depend on how it was found.
+//! the end stays the same, so the result does not depend on how it was found. Where even that does not help, the march goes on
+//! from the walked state; a cycle counts as settled only if every step of it solves its own equation.
 
 use super::Scheme;
-use crate::dae::{At, LinearisedDae};
+use crate::dae::{LinearisedDae, Step};
 use crate::run::Cost;
 
 /// A change below this ends the iteration; convergence is quadratic, so the error left is about its square.
 const TOLERANCE: f64 = 1e-8;
 /// Iterations of one attempt.
 const MOST_ITERATIONS: usize = 40;
-/// Implicit Euler steps of the rescue.
-const SHORT_STEPS: usize = 16;
+/// Full steps before damping may set in.
+const FREE: usize = 6;
+/// A step that is not shorter than this share of the one before makes no progress.
+const PROGRESS: f64 = 0.7;
+/// Shortest share of a step that is taken.
+const SHORTEST: f64 = 1.0 / 16.0;
+/// Implicit Euler steps of the rescue, fewest and most.
+const SHORT_STEPS: [usize; 3] = [8, 64, 512];
 
 /// Workspace and counters of a march.
 pub(super) struct Stepper<'m, M: LinearisedDae> {
     model: &'m M,
-    scheme: Scheme,
-    dt_s: f64,
     factors: M::Factors,
-    rate: Vec<f64>,
-    step: Vec<f64>,
+    residual: Vec<f64>,
+    memory: Vec<f64>,
+    past: Vec<f64>,
     pub cost: Cost,
 }
 
+/// How a step was taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Taken {
+    /// Its equation is solved.
+    Solved,
+    /// The state was reached in short steps of another formula: good enough to march on, no part of a settled cycle.
+    Walked,
+}
+
+/// What a step starts from.
+#[derive(Clone, Copy)]
+pub(super) struct From<'a> {
+    /// State of the step before.
+    pub z: &'a [f64],
+    /// Memory of the step before.
+    pub last: &'a [f64],
+    /// Memory of the step before that.
+    pub before: &'a [f64],
+}
+
 impl<'m, M: LinearisedDae> Stepper<'m, M> {
-    pub fn new(model: &'m M, scheme: Scheme, dt_s: f64) -> Self {
-        let n = model.states();
+    pub fn new(model: &'m M) -> Self {
         Self {
             model,
-            scheme,
-            dt_s,
             factors: model.factors(),
-            rate: vec![0.0; n],
-            step: vec![0.0; n],
+            residual: vec![0.0; model.states()],
+            memory: vec![0.0; model.memories()],
+            past: vec![0.0; model.memories()],
             cost: Cost::default(),
         }
     }
 
-    /// Solves the step at `t_s` after `last` and `before`, from the guess in `z`; `None` if no iteration converged.
-    pub fn step(&mut self, t_s: f64, z: &mut [f64], last: &[f64], before: &[f64]) -> Option<()> {
+    /// Solves the step to `t_s` from the guess in `z`; `None` if neither the step nor a walk in short steps converged.
+    pub fn step(&mut self, scheme: Scheme, dt_s: f64, t_s: f64, z: &mut [f64], from: From) -> Option<Taken> {
         self.cost.steps += 1;
-        let guess = z.to_vec();
-        if self.newton(self.scheme, self.dt_s, t_s, z, last, before) {
-            return Some(());
+        self.remember(scheme, dt_s, from);
+        let alpha = scheme.rates(dt_s)[0];
+        if self.newton(alpha, t_s, z) {
+            return Some(Taken::Solved);
         }
-        z.copy_from_slice(last);
-        if self.newton(self.scheme, self.dt_s, t_s, z, last, before) {
-            return Some(());
+        z.copy_from_slice(from.z);
+        if self.newton(alpha, t_s, z) {
+            return Some(Taken::Solved);
         }
-        self.walk(t_s, z, last).then_some(())?;
-        let found = self.newton(self.scheme, self.dt_s, t_s, z, last, before);
-        if !found {
-            z.copy_from_slice(&guess);
+        z.copy_from_slice(from.z);
+        if self.rescued(alpha, t_s, z) {
+            return Some(Taken::Solved);
         }
-        found.then_some(())
+        for count in SHORT_STEPS {
+            if self.walk(dt_s, count, t_s, z, from) {
+                let walked = z.to_vec();
+                self.remember(scheme, dt_s, from);
+                if self.newton(alpha, t_s, z) {
+                    return Some(Taken::Solved);
+                }
+                z.copy_from_slice(&walked);
+                if self.rescued(alpha, t_s, z) {
+                    return Some(Taken::Solved);
+                }
+                z.copy_from_slice(&walked);
+                return Some(Taken::Walked);
+            }
+        }
+        None
     }
 
-    /// Short implicit Euler steps from `last` at `t_s - dt` to `t_s`.
-    fn walk(&mut self, t_s: f64, z: &mut [f64], last: &[f64]) -> bool {
-        let short = self.dt_s / SHORT_STEPS as f64;
-        let mut from = last.to_vec();
-        z.copy_from_slice(last);
-        for k in 1..=SHORT_STEPS {
-            let t = t_s - self.dt_s + k as f64 * short;
-            if !self.newton(Scheme::Bdf1, short, t, z, &from, &from.clone()) {
-                return false;
+    /// Share of the older memories in the rate.
+    fn remember(&mut self, scheme: Scheme, dt_s: f64, from: From) {
+        let a = scheme.rates(dt_s);
+        for ((past, last), before) in self.past.iter_mut().zip(from.last).zip(from.before) {
+            *past = a[1] * last + a[2] * before;
+        }
+    }
+
+    /// Short implicit Euler steps from `t_s - dt` to `t_s`.
+    fn walk(&mut self, dt_s: f64, count: usize, t_s: f64, z: &mut [f64], from: From) -> bool {
+        let short = dt_s / count as f64;
+        let mut memory = from.last.to_vec();
+        z.copy_from_slice(from.z);
+        for k in 1..=count {
+            let t = t_s - dt_s + k as f64 * short;
+            self.remember(Scheme::Bdf1, short, From { z: from.z, last: &memory, before: &memory });
+            let before = z.to_vec();
+            if !self.newton(1.0 / short, t, z) {
+                z.copy_from_slice(&before);
+                if !self.rescued(1.0 / short, t, z) {
+                    return false;
+                }
             }
-            from.copy_from_slice(z);
+            self.model.memory(t, z, &mut memory);
         }
         true
     }
 
-    fn newton(
-        &mut self,
-        scheme: Scheme,
-        dt_s: f64,
-        t_s: f64,
-        z: &mut [f64],
-        last: &[f64],
-        before: &[f64],
-    ) -> bool {
-        let alpha = scheme.weights()[0] / dt_s;
+    /// Newton's method from the model's own guess.
+    fn rescued(&mut self, alpha: f64, t_s: f64, z: &mut [f64]) -> bool {
+        let guess = z.to_vec();
+        let step = Step { t_s, z: &guess, alpha, past: &self.past };
+        // A guess that fell short is often good enough.
+        self.model.rescue(step, z);
+        self.newton(alpha, t_s, z)
+    }
+
+    fn newton(&mut self, alpha: f64, t_s: f64, z: &mut [f64]) -> bool {
+        let mut damping = Damping::new();
         for _ in 0..MOST_ITERATIONS {
-            scheme.rate(self.model, dt_s, [z, last, before], &mut self.rate);
-            let at = At { t_s, z, rate: &self.rate };
-            self.model.residual(at, &mut self.step);
-            if self.model.factor(at, alpha, &mut self.factors).is_err() {
+            let step = Step { t_s, z, alpha, past: &self.past };
+            let found = self.model.linearise(step, &mut self.memory, &mut self.residual, &mut self.factors);
+            if found.is_err() {
                 return false;
             }
-            self.step.iter_mut().for_each(|v| *v = -*v);
-            self.model.solve(&self.factors, &mut self.step);
+            self.residual.iter_mut().for_each(|v| *v = -*v);
+            self.model.solve(&mut self.factors, &mut self.residual);
             self.cost.newton_iterations += 1;
             self.cost.factorisations += 1;
             self.cost.solves += 1;
-            let change = self.model.change(z, &self.step);
+            let change = self.model.change(z, &self.residual);
             if !change.is_finite() {
                 return false;
             }
-            let share = self.model.admissible(z, &self.step);
-            z.iter_mut().zip(&self.step).for_each(|(z, s)| *z += share * s);
+            let share = damping.share(change).min(self.model.admissible(z, &self.residual));
+            self.model.advance(z, &self.residual, share);
             if share == 1.0 && change < TOLERANCE {
                 return true;
             }
         }
         false
+    }
+}
+
+/// Shortens steps that make no progress: cells that change between full and void by turns (the active set going in circles)
+/// come to rest when they move part of the way. Undamped as long as Newton's method converges by itself.
+struct Damping {
+    taken: usize,
+    share: f64,
+    last: f64,
+}
+
+impl Damping {
+    fn new() -> Self {
+        Self { taken: 0, share: 1.0, last: f64::INFINITY }
+    }
+
+    /// Share of a step of the given size.
+    fn share(&mut self, change: f64) -> f64 {
+        self.taken += 1;
+        let stuck = self.taken > FREE && change > PROGRESS * self.last;
+        self.share = if stuck { (self.share / 2.0).max(SHORTEST) } else { (self.share * 2.0).min(1.0) };
+        self.last = change;
+        self.share
     }
 }

@@ -1,0 +1,153 @@
+//! Marching a model until its cycle repeats.
+
+use super::step::{From, Stepper, Taken};
+use super::{Orbit, OrbitError, OrbitOptions};
+use crate::dae::{At, LinearisedDae};
+use crate::run::{Cancel, Cost};
+
+/// Steps between two looks at the cancel flag.
+const CANCEL_EVERY: usize = 16;
+
+pub(super) struct March<'m, M: LinearisedDae> {
+    model: &'m M,
+    options: OrbitOptions,
+    dt_s: f64,
+    stepper: Stepper<'m, M>,
+    /// States of the pass in progress and, ahead of it, of the pass before (or of the similar model).
+    states: Vec<Vec<f64>>,
+    /// Memories of the last two steps, newest first.
+    last: [Vec<f64>; 2],
+    /// Whether `states` ahead of the march may serve as guesses.
+    warm: bool,
+    taken: usize,
+    /// Steps taken when the last one was walked instead of solved.
+    walked: Option<usize>,
+    periodicity: f64,
+}
+
+impl<'m, M: LinearisedDae> March<'m, M> {
+    pub fn new(model: &'m M, options: &OrbitOptions, start: Option<&Orbit>) -> Self {
+        let (count, dt_s) = (options.steps, model.period_s() / options.steps as f64);
+        let similar = start.filter(|o| o.steps() == count && o.states[0].len() == model.states());
+        let (states, warm) = match similar {
+            Some(orbit) if orbit.states.iter().all(|z| model.contains(z)) => (orbit.states.clone(), true),
+            _ => (vec![model.cold_start(); count], false),
+        };
+        let remembered = |back: usize| {
+            let mut m = vec![0.0; model.memories()];
+            model.memory((count - back) as f64 * dt_s, &states[count - back], &mut m);
+            m
+        };
+        let last = [remembered(1), remembered(2)];
+        let stepper = Stepper::new(model);
+        Self {
+            model,
+            options: *options,
+            dt_s,
+            stepper,
+            last,
+            states,
+            warm,
+            taken: 0,
+            walked: None,
+            periodicity: f64::INFINITY,
+        }
+    }
+
+    pub fn run(&mut self, cancel: &Cancel) -> Result<(), OrbitError> {
+        let count = self.options.steps;
+        let mut close = 0;
+        while close < 2 {
+            if self.taken.is_multiple_of(CANCEL_EVERY) {
+                cancel.check()?;
+            }
+            if self.taken >= count * self.options.max_cycles {
+                return Err(self.unsettled());
+            }
+            let difference = self.advance()?;
+            // Only a full cycle has left every start behind.
+            let solved = self.walked.is_none_or(|w| self.taken > w + count + 1);
+            let settled = self.taken > count && solved && difference <= self.options.periodicity_tolerance;
+            close = if settled { close + 1 } else { 0 };
+            self.periodicity = if close == 2 { self.periodicity.max(difference) } else { difference };
+        }
+        Ok(())
+    }
+
+    /// Why the cycles granted were not enough.
+    fn unsettled(&self) -> OrbitError {
+        match self.walked.filter(|w| self.taken <= w + self.options.steps) {
+            Some(walked) => self.failed(walked - 1),
+            None => OrbitError::NotPeriodic { cycles: self.options.max_cycles, residual: self.periodicity },
+        }
+    }
+
+    fn failed(&self, step: usize) -> OrbitError {
+        let count = self.options.steps;
+        OrbitError::StepFailed { at_share: (step % count) as f64 / count as f64, cycle: step / count + 1 }
+    }
+
+    /// Takes one step and returns how far its memory is from that of the pass before.
+    fn advance(&mut self) -> Result<f64, OrbitError> {
+        let count = self.options.steps;
+        let n = self.taken % count;
+        let t_s = n as f64 * self.dt_s;
+        let mut z = self.guess(n);
+        let old = if self.taken >= count { Some(self.memory(t_s, n)) } else { None };
+        let from =
+            From { z: &self.states[(n + count - 1) % count], last: &self.last[0], before: &self.last[1] };
+        let taken = self.stepper.step(self.options.scheme, self.dt_s, t_s, &mut z, from);
+        let taken = taken.ok_or_else(|| self.failed(self.taken))?;
+        self.states[n] = z;
+        self.taken += 1;
+        if taken == Taken::Walked {
+            self.walked = Some(self.taken);
+        }
+        self.last.rotate_right(1);
+        self.model.memory(t_s, &self.states[n], &mut self.last[0]);
+        Ok(old.map_or(f64::INFINITY, |old| {
+            let change: Vec<f64> = self.last[0].iter().zip(&old).map(|(a, b)| a - b).collect();
+            self.model.memory_change(&change)
+        }))
+    }
+
+    fn memory(&self, t_s: f64, n: usize) -> Vec<f64> {
+        let mut m = vec![0.0; self.model.memories()];
+        self.model.memory(t_s, &self.states[n], &mut m);
+        m
+    }
+
+    /// The state of the pass before, or the last step continued.
+    fn guess(&self, n: usize) -> Vec<f64> {
+        let count = self.options.steps;
+        if self.warm || self.taken > count {
+            return self.states[n].clone();
+        }
+        let mut z = self.states[(n + count - 1) % count].clone();
+        self.model.predict(&self.states[(n + count - 2) % count], &mut z);
+        z
+    }
+
+    pub fn finish(self) -> Orbit {
+        let count = self.options.steps;
+        let cost = Cost { simulations: 1, ..self.stepper.cost };
+        let mut orbit = Orbit {
+            scheme: self.options.scheme,
+            dt_s: self.dt_s,
+            parameters: self.model.parameters().to_vec(),
+            states: self.states,
+            outputs: Vec::with_capacity(count),
+            periodicity: self.periodicity,
+            balance: 0.0,
+            cycles: self.taken as f64 / count as f64,
+            cost,
+        };
+        let rates = orbit.rates(self.model);
+        for (n, rate) in rates.iter().enumerate() {
+            let mut y = vec![0.0; self.model.outputs()];
+            self.model.output(At { t_s: orbit.time_s(n), z: &orbit.states[n], rate }, &mut y);
+            orbit.outputs.push(y);
+        }
+        orbit
+    }
+}
