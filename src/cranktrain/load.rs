@@ -15,6 +15,8 @@ pub struct Drive {
     pub shell_speed_rad_s: f64,
     /// Angular acceleration of the shell, rad/s2.
     pub shell_acceleration_rad_s2: f64,
+    /// How far the journal has turned in the frame of the shell since firing top dead centre, rad.
+    pub journal_angle_rad: f64,
 }
 
 /// A load given over the crank angle, in the frame of a shell at rest.
@@ -59,16 +61,19 @@ impl BearingLoad {
                     relative_speed_rad_s: speed_rad_s * (1.0 - d1),
                     shell_speed_rad_s: speed_rad_s * d1,
                     shell_acceleration_rad_s2: speed_rad_s * speed_rad_s * d2,
+                    journal_angle_rad: crank_angle_rad - rod,
                 }
             }
             Self::Main(main) => Drive {
                 load_n: main.engine.main_load_n(main.main, crank_angle_rad, speed_rad_s),
                 relative_speed_rad_s: speed_rad_s,
+                journal_angle_rad: crank_angle_rad,
                 ..Default::default()
             },
             Self::Table(table) => Drive {
                 load_n: [table.x.value(crank_angle_rad), table.y.value(crank_angle_rad)],
                 relative_speed_rad_s: speed_rad_s,
+                journal_angle_rad: crank_angle_rad,
                 ..Default::default()
             },
         }
@@ -92,6 +97,12 @@ mod tests {
             let (size, expected) = (drive.load_n[0].hypot(drive.load_n[1]), pin[0].hypot(pin[1]));
             assert!((size - expected).abs() < 1e-9 * expected);
             assert!((drive.relative_speed_rad_s + drive.shell_speed_rad_s - 157.0).abs() < 1e-12);
+            let later =
+                load.at(a + 1e-6, 157.0).journal_angle_rad - load.at(a - 1e-6, 157.0).journal_angle_rad;
+            assert!(
+                (later / 2e-6 * 157.0 - drive.relative_speed_rad_s).abs() < 1e-5,
+                "angle and speed belong together"
+            );
             turn += drive.shell_speed_rad_s / n as f64;
         }
         assert!(turn.abs() < 1e-9, "the rod swings back: {turn}");

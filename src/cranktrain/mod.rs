@@ -15,7 +15,10 @@ mod slider_crank;
 mod vee;
 mod working_cycle;
 
-pub use bearing::{BearingOutput, BearingParameter, BearingSetup, JournalBearing};
+pub use bearing::{
+    BearingFactors, BearingOutput, BearingParameter, BearingPoint, BearingSetup, BearingShape, HeatBalance,
+    JournalBearing, Tilt,
+};
 pub use load::{BearingLoad, Drive, LoadTable};
 pub use pressure::CylinderPressure;
 pub use rod::{Cylinder, RodForces};
