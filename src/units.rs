@@ -128,7 +128,8 @@ impl<D: Dimension> schemars::JsonSchema for Measure<D> {
 
     fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
         let units: Vec<&str> = D::UNITS.iter().map(|u| u.0).collect();
-        let spelled = units.join("|").replace('u', "[uµμ]").replace("deg", "(deg|°)").replace('/', "\\/");
+        let spelled = units.join("|").replace('(', "\\(").replace(')', "\\)");
+        let spelled = spelled.replace('u', "[uµμ]").replace("deg", "(deg|°)").replace('/', "\\/");
         schemars::json_schema!({
             "type": "string",
             "description": format!("Text: {} with its unit ({})", D::NAME, units.join(", ")),
@@ -166,7 +167,8 @@ dimensions! {
     /// A temperature difference.
     TemperatureRiseKind, TemperatureRise, "a temperature difference", "15 K", &[("K", 1.0, 0.0)];
     /// An angle.
-    AngleKind, Angle, "an angle", "90 deg", &[("deg", std::f64::consts::PI / 180.0, 0.0), ("rad", 1.0, 0.0)];
+    AngleKind, Angle, "an angle", "90 deg",
+        &[("deg", std::f64::consts::PI / 180.0, 0.0), ("rad", 1.0, 0.0), ("mrad", 1e-3, 0.0)];
     /// A rotational speed.
     RotationKind, Rotation, "a rotational speed", "1500 rpm",
         &[("rpm", std::f64::consts::PI / 30.0, 0.0), ("rad/s", 1.0, 0.0), ("Hz", 2.0 * std::f64::consts::PI, 0.0)];
@@ -180,9 +182,25 @@ dimensions! {
     DensityKind, Density, "a density", "895 kg/m3", &[("kg/m3", 1.0, 0.0)];
     /// An amount of heat.
     HeatKind, Heat, "an amount of heat", "95 kJ", &[("J", 1.0, 0.0), ("kJ", 1e3, 0.0), ("MJ", 1e6, 0.0)];
+    /// A force.
+    ForceKind, Force, "a force", "8 kN", &[("N", 1.0, 0.0), ("kN", 1e3, 0.0), ("MN", 1e6, 0.0)];
     /// A volume flow.
     VolumeFlowKind, VolumeFlow, "a volume flow", "1.5 l/min",
         &[("l/min", 1e-3 / 60.0, 0.0), ("l/s", 1e-3, 0.0), ("m3/s", 1.0, 0.0)];
+    /// A power.
+    PowerKind, Power, "a power", "120 W", &[("W", 1.0, 0.0), ("kW", 1e3, 0.0)];
+    /// A specific heat capacity.
+    HeatCapacityKind, HeatCapacity, "a heat capacity", "2000 J/(kg K)",
+        &[("J/(kg K)", 1.0, 0.0), ("kJ/(kg K)", 1e3, 0.0)];
+    /// A heat flow per temperature difference.
+    ConductanceKind, Conductance, "a heat conductance", "20 W/K", &[("W/K", 1.0, 0.0), ("kW/K", 1e3, 0.0)];
+    /// A pressure-viscosity coefficient.
+    PressureViscosityKind, PressureViscosity, "a pressure viscosity coefficient", "20 1/GPa",
+        &[("1/GPa", 1e-9, 0.0), ("1/MPa", 1e-6, 0.0), ("1/Pa", 1.0, 0.0)];
+    /// A shear rate.
+    ShearRateKind, ShearRate, "a shear rate", "1e6 1/s", &[("1/s", 1.0, 0.0)];
+    /// A time.
+    TimeKind, Time, "a time", "2 us", &[("s", 1.0, 0.0), ("ms", 1e-3, 0.0), ("us", 1e-6, 0.0)];
 }
 
 #[cfg(test)]
@@ -199,6 +217,9 @@ mod tests {
         assert!(close("95 °C".parse::<Temperature>().unwrap().si(), 368.15));
         assert!(close("1500 rpm".parse::<Rotation>().unwrap().si(), 157.079_632_679_489_66));
         assert!(close("10 mPa s".parse::<DynamicViscosity>().unwrap().si(), 0.01));
+        assert!(close("20 1/GPa".parse::<PressureViscosity>().unwrap().si(), 2e-8));
+        assert!(close("2 kJ/(kg K)".parse::<HeatCapacity>().unwrap().si(), 2000.0));
+        assert!(close("0.5 mrad".parse::<Angle>().unwrap().si(), 5e-4));
     }
 
     #[test]

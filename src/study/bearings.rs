@@ -1,107 +1,68 @@
-//! Checks of the bearings and of the machine that loads them.
+//! Checks of the bearings.
 
 use super::Given;
-use super::faults::{Faults, join};
-use super::file::{BearingFile, BearingKind, MachineFile, StudyFile};
-use super::machine::{self, zero};
-use super::plans::{BearingPlan, LoadPlan};
-use super::table::{TableFile, periodic};
-use crate::cranktrain::{Cylinder, LoadTable, VeeEngine};
-use crate::math::PeriodicSpline;
+use super::faults::{Faults, join, refuse_others};
+use super::file::{BearingFile, FilmModelName, StudyFile};
+use super::machine::zero;
+use super::plans::{BearingPlan, FilmPlan, RoughnessPlan, SupplyPlan};
+use super::{fit, heat, loads, roughness, shapes, supply};
+use crate::cranktrain::{BearingShape, Tilt};
 use crate::units::Length;
-use std::collections::BTreeMap;
 use std::path::Path;
 
-pub(super) fn machine_of(
-    file: &mut StudyFile,
-    base: Option<&Path>,
-    faults: &mut Faults,
-    fingerprint: &mut String,
-) -> (Option<Cylinder>, Option<VeeEngine>) {
-    let kinds: Vec<BearingKind> = file
-        .bearings
-        .value()
-        .into_iter()
-        .flat_map(|b| b.values())
-        .filter_map(|b| b.value().and_then(|b| b.kind.value().copied()))
-        .collect();
-    let needs_vee = kinds.contains(&BearingKind::Main);
-    if !kinds.is_empty() && !needs_vee && !kinds.contains(&BearingKind::BigEnd) {
-        let why = "no bearing takes its load from the machine";
-        faults.unused(&file.machine, "machine", why);
-        faults.unused(&file.cylinder_pressure, "cylinder_pressure", why);
-        return (None, None);
-    }
-    faults.need(&file.machine, "machine");
-    faults.need(&file.cylinder_pressure, "cylinder_pressure");
-    let (Given::Value(machine), Given::Value(pressure)) = (&mut file.machine, &mut file.cylinder_pressure)
-    else {
-        return (None, None);
-    };
-    let cylinder = machine::cylinder(machine, pressure, base, faults, fingerprint);
-    last_main(file.bearings.value(), machine, faults);
-    if needs_vee || !machine.firing_order.is_absent() {
-        let vee = machine::vee(machine, cylinder.as_ref(), faults);
-        return (cylinder, vee);
-    }
-    let why = "there is no main bearing and no firing_order";
-    faults.unused(&machine.vee_angle, "machine.vee_angle", why);
-    faults.unused(&machine.throw_angles, "machine.throw_angles", why);
-    faults.unused(&machine.throw_mass, "machine.throw_mass", why);
-    faults.unused(&machine.rod_spacing_ratio, "machine.rod_spacing_ratio", why);
-    (cylinder, None)
+/// Bearings by name, with what the checks made of them.
+pub(super) type Bearings = Vec<(String, Option<BearingPlan>)>;
+
+/// What the bearings of a study share.
+pub(super) struct Frame<'a> {
+    pub film: Option<&'a FilmPlan>,
+    pub base: Option<&'a Path>,
 }
 
-/// Main bearings are counted from 0 to the number of throws.
-fn last_main(
-    bearings: Option<&BTreeMap<String, Given<BearingFile>>>,
-    machine: &MachineFile,
-    faults: &mut Faults,
-) {
-    let Some(throws) = machine.throw_angles.value().map(Vec::len) else { return };
-    for (name, bearing) in bearings.into_iter().flatten() {
-        let main = bearing.value().and_then(|b| b.main_bearing.value());
-        if let Some(main) = main.filter(|m| **m > throws) {
-            let path = format!("bearings.{name}.main_bearing");
-            faults.add(&path, format!("must be at most {throws}, the number of throws, found {main}"));
-        }
+impl Frame<'_> {
+    /// Whether the film knows more than smooth aligned cylinders.
+    fn detailed(&self) -> bool {
+        self.film.is_none_or(|f| f.model == FilmModelName::Reynolds)
     }
 }
 
 pub(super) fn bearings(
     file: &mut StudyFile,
-    base: Option<&Path>,
+    frame: &Frame,
     faults: &mut Faults,
     fingerprint: &mut String,
-) -> Option<Vec<BearingPlan>> {
+) -> Option<Bearings> {
     faults.need(&file.bearings, "bearings")?;
     let Given::Value(map) = &mut file.bearings else { return None };
     if map.is_empty() {
         faults.add("bearings", "needs at least one bearing, like [bearings.big_end]");
     }
-    let mut plans = Vec::new();
-    let mut complete = true;
+    let mut found = Vec::new();
     for (name, given) in map.iter_mut() {
         let path = join("bearings", name);
-        if !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-') || name == "oil" {
+        if !is_name(name) || name == "oil" {
             faults.add(&path, "a bearing's name is made of letters, digits, '_' and '-', and is not 'oil'");
         }
         faults.get(given, &path);
         let plan = match given {
-            Given::Value(bearing) => bearing_plan(name, bearing, &path, base, faults, fingerprint),
+            Given::Value(bearing) => bearing_plan(name, bearing, &path, frame, faults, fingerprint),
             _ => None,
         };
-        complete &= plan.is_some();
-        plans.extend(plan);
+        found.push((name.clone(), plan));
     }
-    complete.then_some(plans)
+    Some(found)
+}
+
+/// Whether a name can stand in the name of a parameter.
+pub(super) fn is_name(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
 }
 
 fn bearing_plan(
     name: &str,
     b: &mut BearingFile,
     path: &str,
-    base: Option<&Path>,
+    frame: &Frame,
     faults: &mut Faults,
     fingerprint: &mut String,
 ) -> Option<BearingPlan> {
@@ -124,57 +85,91 @@ fn bearing_plan(
     faults.range(Some(mass), &at("journal_mass"), |v| v >= 0.0, "at or above zero");
     let count = faults.or(&mut b.count, &at("count"), 1);
     faults.range(Some(f64::from(count)), &at("count"), |v| v >= 1.0, "at least 1");
-    let Some(kind) = faults.need(&b.kind, &at("kind")) else {
-        faults.get(&b.load, &at("load"));
-        faults.get(&b.cycle, &at("cycle"));
-        faults.get(&b.main_bearing, &at("main_bearing"));
-        return None;
-    };
-    if kind != BearingKind::Main {
-        faults.unused(&b.main_bearing, &at("main_bearing"), "the bearing is no main bearing");
-    }
-    if kind != BearingKind::Table {
-        faults.unused(&b.load, &at("load"), "kind is not \"table\"");
-        faults.unused(&b.cycle, &at("cycle"), "kind is not \"table\"");
-    }
-    let load = match kind {
-        BearingKind::BigEnd => LoadPlan::BigEnd,
-        BearingKind::Main => LoadPlan::Main(faults.need(&b.main_bearing, &at("main_bearing"))?),
-        BearingKind::Table => {
-            let cycle = faults.or(&mut b.cycle, &at("cycle"), zero("720 deg")).si();
-            faults.range(Some(cycle), &at("cycle"), |v| v > 0.0, "above zero");
-            faults.need(&b.load, &at("load"));
-            let Given::Value(table) = &mut b.load else { return None };
-            LoadPlan::Table(load_table(table, cycle, &at("load"), base, faults, fingerprint)?)
-        }
-    };
-    Some(BearingPlan {
+    let size = width.zip(diameter).map(|(w, d)| [w, d]);
+    let before = faults.count();
+    let details = details(b, path, frame, size, faults, fingerprint);
+    let heat = heat::heat_balance(&mut b.heat_balance, &at("heat_balance"), faults);
+    let whole = faults.count() == before;
+    let load = loads::load(b, path, frame.base, faults, fingerprint);
+    let plan = BearingPlan {
         name: name.to_owned(),
         width_m: width?,
         diameter_m: diameter?,
         diametral_clearance_m: clearance?,
         journal_mass_kg: mass,
         count,
-        load,
-    })
+        tilt: details.tilt,
+        supply: details.supply,
+        roughness: details.roughness,
+        heat,
+        shapes: details.shapes,
+        load: load?,
+    };
+    if !whole {
+        return None;
+    }
+    fit::leave_a_gap(&plan, path, faults);
+    fit::come_back(&plan, path, faults);
+    Some(plan)
 }
 
-fn load_table(
-    file: &mut TableFile,
-    cycle: f64,
+/// What only a film on a mesh knows.
+struct Details {
+    tilt: Tilt,
+    supply: Option<SupplyPlan>,
+    roughness: Option<RoughnessPlan>,
+    shapes: Vec<BearingShape>,
+}
+
+fn details(
+    b: &mut BearingFile,
     path: &str,
-    base: Option<&Path>,
+    frame: &Frame,
+    size: supply::Size,
     faults: &mut Faults,
     fingerprint: &mut String,
-) -> Option<LoadTable> {
-    let table = file.load(base, path, faults)?;
-    fingerprint.push_str(&table.fingerprint());
-    let x: &[(&str, f64)] = &[("force_x_n", 1.0), ("force_x_kn", 1e3)];
-    let y: &[(&str, f64)] = &[("force_y_n", 1.0), ("force_y_kn", 1e3)];
-    let curves = periodic(&table, cycle, &[x, y]).and_then(|(angles, mut columns)| {
-        let y = columns.remove(1);
-        let spline = |v| PeriodicSpline::new(angles.clone(), v, cycle).map_err(|e| e.to_string());
-        Ok(LoadTable { x: spline(columns.remove(0))?, y: spline(y)? })
-    });
-    curves.map_err(|e| faults.add(path, e)).ok()
+) -> Details {
+    let at = |key: &str| join(path, key);
+    let mut found =
+        Details { tilt: Tilt::Given([0.0; 2]), supply: None, roughness: None, shapes: Vec::new() };
+    if !frame.detailed() {
+        let why = "film.model \"mobility\" knows only smooth, aligned, cylindrical bearings full of oil";
+        refuse_others!(faults, b, path, why, [], [tilt_x, tilt_y, free_tilt, supply, roughness, shapes]);
+        return found;
+    }
+    found.tilt = tilt(b, path, faults);
+    faults.get(&b.supply, &at("supply"));
+    if let Given::Value(file) = &mut b.supply {
+        found.supply = supply::supply(file, &at("supply"), size, frame.film, faults);
+    } else if b.supply.is_absent() && frame.film.is_some_and(FilmPlan::runs_dry) {
+        let words = "is missing: a mass-conserving film needs oil; give it, or a film.side_pressure above the cavitation \
+                     pressure, or choose film.cavitation = \"swift-stieber\"";
+        faults.add(&at("supply"), words);
+    }
+    faults.get(&b.roughness, &at("roughness"));
+    if let Given::Value(file) = &mut b.roughness {
+        found.roughness = roughness::roughness(file, &at("roughness"), faults);
+    }
+    faults.get(&b.shapes, &at("shapes"));
+    if let Given::Value(list) = &mut b.shapes {
+        found.shapes = shapes::shapes(list, &at("shapes"), frame.base, faults, fingerprint);
+    }
+    found
+}
+
+fn tilt(b: &mut BearingFile, path: &str, faults: &mut Faults) -> Tilt {
+    if faults.or(&mut b.free_tilt, &join(path, "free_tilt"), false) {
+        refuse_others!(
+            faults,
+            b,
+            path,
+            "free_tilt lets the journal tilt as the film's moment does",
+            [],
+            [tilt_x, tilt_y]
+        );
+        return Tilt::Free;
+    }
+    let x = faults.or(&mut b.tilt_x, &join(path, "tilt_x"), zero("0 deg")).si();
+    let y = faults.or(&mut b.tilt_y, &join(path, "tilt_y"), zero("0 deg")).si();
+    Tilt::Given([x, y])
 }

@@ -1,14 +1,14 @@
 //! From a checked study to a design problem: one case per bearing and operating point, one constraint row per limit and case.
 
 use super::check::Study;
-use super::file::{CavitationName, FilmModelName};
-use super::plans::LoadPlan;
+use super::file::{CavitationName, CavityShearName, FilmModelName};
+use super::plans::{BearingPlan, LoadPlan};
 use super::vocabulary::QuantityName;
 use crate::cranktrain::{
-    BearingLoad, BearingParameter, BearingSetup, Cylinder, JournalBearing, LoadTable, MainLoad, VeeEngine,
+    BearingLoad, BearingSetup, Cylinder, HeatBalance, JournalBearing, LoadTable, MainLoad, VeeEngine,
 };
 use crate::dae::InvalidParameters;
-use crate::film::{Axial, Cavitation, FilmModel, Mesh, Reynolds, ShortFilm};
+use crate::film::{Axial, Cavitation, CavityShear, FilmModel, Mesh, Reynolds, ShortFilm};
 use crate::gradient::{EngineName, engine};
 use crate::math::PeriodicSpline;
 use crate::optimise::{Case, DesignProblem, Limit};
@@ -53,10 +53,10 @@ pub fn plan<'r>(
     engine_name: EngineName,
     run: RunContext<'r>,
 ) -> Result<Plan<'r>, InvalidParameters> {
-    let film = film(study);
+    let films: Vec<Arc<dyn FilmModel>> = (0..study.bearings.len()).map(|b| film(study, b)).collect();
     let (mut labels, mut cases, mut quantities) = (Vec::new(), Vec::new(), Vec::new());
     for point in 0..study.points.len() {
-        for bearing in 0..study.bearings.len() {
+        for (bearing, film) in films.iter().enumerate() {
             let names = quantities_of(study, bearing);
             cases.push(case(study, bearing, point, &names, film.clone())?);
             labels.push(CaseLabel { bearing, point });
@@ -90,21 +90,65 @@ fn quantities_of(study: &Study, bearing: usize) -> Vec<QuantityName> {
     QuantityName::ALL.into_iter().filter(|q| *q == QuantityName::MeanFrictionLoss || limited(q)).collect()
 }
 
-fn film(study: &Study) -> Arc<dyn FilmModel> {
-    let plan = &study.film;
-    match plan.model {
+/// The film of a bearing.
+fn film(study: &Study, bearing: usize) -> Arc<dyn FilmModel> {
+    match study.film.model {
         FilmModelName::Mobility => Arc::new(ShortFilm::new(study.sharpness)),
-        FilmModelName::Reynolds => Arc::new(Reynolds {
-            cavitation: match plan.cavitation {
-                CavitationName::SwiftStieber => Cavitation::SwiftStieber,
-                CavitationName::None => Cavitation::None,
-            },
-            side_pressure_pa: plan.side_pressure_pa,
-            cavitation_pressure_pa: plan.cavitation_pressure_pa,
-            sharpness: study.sharpness,
-            // The journal stays aligned, so one half of the width tells all.
-            ..Reynolds::new(Mesh::new(plan.cells_around, plan.cells_across_half, Axial::Half))
-        }),
+        FilmModelName::Reynolds => Arc::new(reynolds(study, bearing)),
+    }
+}
+
+/// The film of a bearing whose journal stands along 0 deg, if wanted at the pressure of the surroundings along its widest gap.
+pub(super) fn characteristic_film(
+    study: &Study,
+    bearing: usize,
+    ambient_at_widest_gap: bool,
+) -> Arc<dyn FilmModel> {
+    match study.film.model {
+        FilmModelName::Reynolds if ambient_at_widest_gap => {
+            let film = reynolds(study, bearing);
+            Arc::new(Reynolds { held_columns: vec![(film.mesh.n_phi / 2, 0.0)], ..film })
+        }
+        _ => film(study, bearing),
+    }
+}
+
+/// A bearing at a speed of its own, nothing varied.
+pub(super) fn still_setup(
+    study: &Study,
+    bearing: usize,
+    speed_rad_s: f64,
+) -> Result<BearingSetup, InvalidParameters> {
+    let plan = &study.bearings[bearing];
+    let load = Arc::new(load(study, &plan.load, 1.0)?);
+    Ok(BearingSetup { speed_rad_s, ..setup(study, plan, film(study, bearing), load) })
+}
+
+/// Reynolds' equation on half of the width if the mid-plane is a mirror.
+fn reynolds(study: &Study, bearing: usize) -> Reynolds {
+    let (plan, bearing_plan) = (&study.film, &study.bearings[bearing]);
+    let (across, axial) = match study.half_suffices(bearing) {
+        true => (plan.cells_across_half, Axial::Half),
+        false => (2 * plan.cells_across_half, Axial::Full),
+    };
+    Reynolds {
+        cavitation: match plan.cavitation {
+            CavitationName::MassConserving => Cavitation::MassConserving,
+            CavitationName::SwiftStieber => Cavitation::SwiftStieber,
+            CavitationName::Guembel => Cavitation::Guembel,
+            CavitationName::None => Cavitation::None,
+        },
+        cavity_shear: match plan.cavity_shear {
+            CavityShearName::Fill => CavityShear::Fill,
+            CavityShearName::Full => CavityShear::Full,
+        },
+        side_pressure_pa: plan.side_pressure_pa,
+        cavitation_pressure_pa: plan.cavitation_pressure_pa,
+        feeds: bearing_plan.supply.as_ref().map_or_else(Vec::new, |s| s.feeds.clone()),
+        oil: study.oil.laws.clone(),
+        rough: bearing_plan.roughness.as_ref().map(|r| r.film.clone()),
+        sharpness: study.sharpness,
+        ..Reynolds::new(Mesh::new(plan.cells_around, across, axial))
     }
 }
 
@@ -118,22 +162,9 @@ fn case(
     let (plan, at) = (&study.bearings[bearing], &study.points[point]);
     let mine = |p: &super::ParameterPlan| p.bearing.is_none_or(|b| b == bearing);
     let variables: Vec<usize> = (0..study.parameters.len()).filter(|&j| mine(&study.parameters[j])).collect();
-    let setup = BearingSetup {
-        film,
-        load: Arc::new(load(study, &plan.load, at.load_factor)?),
-        speed_rad_s: at.speed_rad_s,
-        viscosity: study.viscosity,
-        film_rise_k: study.film_rise_k,
-        journal_mass_kg: plan.journal_mass_kg,
-        width_m: plan.width_m,
-        diameter_m: plan.diameter_m,
-        diametral_clearance_m: plan.diametral_clearance_m,
-        inlet_temperature_k: study.inlet_temperature_k,
-        parameters: variables
-            .iter()
-            .map(|&j| study.parameters[j].variable.parameter)
-            .collect::<Vec<BearingParameter>>(),
-    };
+    let parameters = variables.iter().map(|&j| study.parameters[j].variable.parameter).collect();
+    let load = Arc::new(load(study, &plan.load, at.load_factor)?);
+    let setup = BearingSetup { speed_rad_s: at.speed_rad_s, parameters, ..setup(study, plan, film, load) };
     Ok(Case {
         model: JournalBearing::new(setup)?,
         variables,
@@ -141,6 +172,36 @@ fn case(
         options: study.orbit,
         objective: vec![(0, at.weight * f64::from(plan.count))],
     })
+}
+
+/// A bearing as it stands in the study.
+fn setup(
+    study: &Study,
+    plan: &BearingPlan,
+    film: Arc<dyn FilmModel>,
+    load: Arc<BearingLoad>,
+) -> BearingSetup {
+    let oil = &study.oil;
+    BearingSetup {
+        film_rise_k: oil.film_rise_k,
+        heat: plan.heat.map(|h| HeatBalance {
+            volumetric_heat_j_m3_k: oil.volumetric_heat_j_m3_k,
+            film_share: h.film_share,
+            conductance_w_k: h.conductance_w_k,
+            ambient_k: h.ambient_k,
+        }),
+        journal_mass_kg: plan.journal_mass_kg,
+        width_m: plan.width_m,
+        diameter_m: plan.diameter_m,
+        diametral_clearance_m: plan.diametral_clearance_m,
+        inlet_temperature_k: oil.inlet_temperature_k,
+        journal_roughness_m: plan.roughness.as_ref().map_or(0.0, |r| r.journal_m),
+        shell_roughness_m: plan.roughness.as_ref().map_or(0.0, |r| r.shell_m),
+        supply_pressure_pa: plan.supply.as_ref().map_or(0.0, |s| s.pressure_pa),
+        tilt: plan.tilt,
+        shapes: plan.shapes.clone(),
+        ..BearingSetup::plain(film, load, oil.viscosity)
+    }
 }
 
 fn load(study: &Study, plan: &LoadPlan, factor: f64) -> Result<BearingLoad, InvalidParameters> {

@@ -1,13 +1,15 @@
 //! From the file to a checked study: SI values, defaults written in, every mistake reported.
 
+use super::bearings::{Bearings, Frame};
+use super::characteristic::CharacteristicPlan;
 use super::document::{Format, parse};
 use super::faults::{Fault, Faults, StudyErrors, line_of, without_nulls};
-use super::file::StudyFile;
-use super::plans::{BearingPlan, ConstraintPlan, FilmPlan, OperatingPoint, ParameterPlan};
-use super::{FORMAT, bearings, design, sections};
-use crate::cranktrain::{Cylinder, VeeEngine};
+use super::file::{FilmModelName, StudyFile};
+use super::oil::OilUse;
+use super::plans::{BearingPlan, ConstraintPlan, FilmPlan, OilPlan, OperatingPoint, ParameterPlan};
+use super::{FORMAT, bearings, characteristic, constraints, film, heat, loads, oil, parameters, sections};
+use crate::cranktrain::{BearingParameter, Cylinder, VeeEngine};
 use crate::gradient::EngineName;
-use crate::laws::Viscosity;
 use crate::optimise::SqpOptions;
 use crate::orbit::OrbitOptions;
 use serde::Deserialize;
@@ -38,12 +40,8 @@ pub struct Study {
     pub film: FilmPlan,
     /// Orbit.
     pub orbit: OrbitOptions,
-    /// Viscosity law.
-    pub viscosity: Viscosity,
-    /// Temperature at the inlet, K.
-    pub inlet_temperature_k: f64,
-    /// Film less inlet temperature, K.
-    pub film_rise_k: f64,
+    /// Oil.
+    pub oil: OilPlan,
     /// Gradient engine.
     pub engine: EngineName,
     /// Relative perturbation of the finite differences.
@@ -52,6 +50,7 @@ pub struct Study {
     pub optimiser: SqpOptions,
     /// Sharpness of smooth extrema.
     pub sharpness: f64,
+    pub(super) characteristic: Option<CharacteristicPlan>,
     pub(super) cylinder: Option<Cylinder>,
     pub(super) vee: Option<VeeEngine>,
 }
@@ -92,6 +91,21 @@ impl Study {
         Err(StudyErrors { faults, text: text.to_owned() })
     }
 
+    /// Whether half of the width of a bearing tells all.
+    pub(super) fn half_suffices(&self, bearing: usize) -> bool {
+        let tilts = self
+            .parameters
+            .iter()
+            .any(|p| p.bearing == Some(bearing) && matches!(p.variable.parameter, BearingParameter::Tilt(_)));
+        self.bearings[bearing].symmetric(tilts)
+    }
+
+    /// Cells of a bearing's film.
+    fn cells(&self, bearing: usize) -> usize {
+        let halves = if self.half_suffices(bearing) { 1 } else { 2 };
+        halves * self.film.cells_around * self.film.cells_across_half
+    }
+
     /// The study with every default written out, as TOML.
     pub fn to_toml(&self) -> String {
         toml::to_string_pretty(&self.to_json()).expect("a checked study is valid TOML")
@@ -111,50 +125,39 @@ fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Optio
     faults.need(&file.title, "title");
     faults.get(&file.question, "question");
     let mut fingerprint = String::new();
-    let plans = bearings::bearings(&mut file, base, faults, &mut fingerprint);
-    let (cylinder, vee) = bearings::machine_of(&mut file, base, faults, &mut fingerprint);
-    let oil = sections::oil(&mut file, faults);
-    let film = faults.section(&mut file.film, "film").and_then(|f| sections::film(f, faults));
+    let film = faults.section(&mut file.film, "film").and_then(|f| film::film(f, faults));
+    let frame = Frame { film: film.as_ref(), base };
+    let named = bearings::bearings(&mut file, &frame, faults, &mut fingerprint).unwrap_or_default();
+    let (cylinder, vee) = loads::machine_of(&mut file, base, faults, &mut fingerprint);
+    let used = OilUse {
+        mobility: film.as_ref().is_some_and(|f| f.model == FilmModelName::Mobility),
+        heat: heat::any_heat_balance(&file),
+    };
+    let oil = oil::oil(&mut file, used, faults, &mut fingerprint);
     let orbit = faults.section(&mut file.orbit, "orbit").map(|o| sections::orbit_options(o, faults));
-    let points = sections::points(&mut file, faults);
-    let names: Vec<String> = file.bearings.value().map(|b| b.keys().cloned().collect()).unwrap_or_default();
-    let parameters = design::parameters(&mut file, &names, plans.as_deref(), faults);
-    let constraints = design::constraints(&file, &names, faults);
-    let gradient = sections::gradient(&mut file, faults);
-    let optimiser = sections::optimiser(&mut file, faults);
-    sections::assumptions(&mut file, faults);
-    if let (Some(film), Some(orbit), Some(plans), Some(points)) = (&film, &orbit, &plans, &points) {
-        let cells = film.cells_around * film.cells_across_half;
-        let bytes =
-            cells as f64 * orbit.steps as f64 * 8.0 * KEPT_CYCLES * (plans.len() * points.len()) as f64;
-        if bytes > MOST_BYTES {
-            let needed = crate::report::short(bytes * 1e-9);
-            let most = crate::report::short(MOST_BYTES * 1e-9);
-            faults.add(
-                "film",
-                format!(
-                    "cells times steps, bearings and operating points need {needed} GB; at most {most} GB"
-                ),
-            );
-        }
+    let characteristic = characteristic::characteristic(&mut file, base, faults, &mut fingerprint);
+    if !faults.any() {
+        characteristic::positions(&file, characteristic.as_ref(), faults);
     }
+    let search = match characteristic::refuse_search(&file, faults) {
+        true => Some(Search::none()),
+        false => search(&mut file, &named, film.as_ref(), faults),
+    };
+    sections::assumptions(&mut file, faults);
     if faults.any() {
         return None;
     }
-    let (viscosity, inlet_temperature_k, film_rise_k) = oil?;
-    let (engine, perturbation) = gradient?;
-    let (optimiser, sharpness) = optimiser?;
+    let Search { points, parameters, constraints, engine, perturbation, optimiser, sharpness } = search?;
     let mut study = Study {
         hash: String::new(),
-        bearings: plans?,
-        points: points?,
-        parameters: parameters?,
-        constraints: constraints?,
+        bearings: named.into_iter().map(|(_, plan)| plan).collect::<Option<_>>()?,
+        points,
+        parameters,
+        constraints,
+        characteristic,
         film: film?,
         orbit: orbit?,
-        viscosity,
-        inlet_temperature_k,
-        film_rise_k,
+        oil: oil?,
         engine,
         perturbation,
         optimiser,
@@ -163,7 +166,70 @@ fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Optio
         vee,
         file,
     };
+    if let Some(words) = too_large(&study) {
+        faults.add("film", words);
+        return None;
+    }
     let digest = Sha256::digest(format!("{}{fingerprint}", study.to_json()).as_bytes());
     study.hash = digest.iter().map(|b| format!("{b:02x}")).collect();
     Some(study)
+}
+
+/// What is searched and how.
+struct Search {
+    points: Vec<OperatingPoint>,
+    parameters: Vec<ParameterPlan>,
+    constraints: Vec<ConstraintPlan>,
+    engine: EngineName,
+    perturbation: f64,
+    optimiser: SqpOptions,
+    sharpness: f64,
+}
+
+impl Search {
+    /// Nothing: the study tabulates.
+    fn none() -> Self {
+        Self {
+            points: Vec::new(),
+            parameters: Vec::new(),
+            constraints: Vec::new(),
+            engine: EngineName::Adj,
+            perturbation: 1e-6,
+            optimiser: SqpOptions::default(),
+            sharpness: sections::SHARPNESS,
+        }
+    }
+}
+
+fn search(
+    file: &mut StudyFile,
+    named: &Bearings,
+    film: Option<&FilmPlan>,
+    faults: &mut Faults,
+) -> Option<Search> {
+    let points = sections::points(file, faults);
+    let parameters = parameters::parameters(file, named, film, faults);
+    let constraints = constraints::constraints(file, named, faults);
+    let gradient = sections::gradient(file, faults);
+    let optimiser = sections::optimiser(file, faults);
+    let ((engine, perturbation), (optimiser, sharpness)) = (gradient?, optimiser?);
+    Some(Search {
+        points: points?,
+        parameters: parameters?,
+        constraints: constraints?,
+        engine,
+        perturbation,
+        optimiser,
+        sharpness,
+    })
+}
+
+/// Why a study needs more memory than there is.
+fn too_large(study: &Study) -> Option<String> {
+    let cells: usize = (0..study.bearings.len()).map(|b| study.cells(b)).sum();
+    let bytes = (cells * study.orbit.steps * study.points.len()) as f64 * 8.0 * KEPT_CYCLES;
+    (bytes > MOST_BYTES).then(|| {
+        let (needed, most) = (crate::report::short(bytes * 1e-9), crate::report::short(MOST_BYTES * 1e-9));
+        format!("cells times steps, bearings and operating points need {needed} GB; at most {most} GB")
+    })
 }

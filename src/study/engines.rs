@@ -98,6 +98,7 @@ impl Bench<'_> {
         let (label, quantities) = (self.plan.cases[self.case], &self.plan.quantities[self.case]);
         let parameters = self.parameters();
         let model = self.plan.problem.model(self.case, &self.plan.start)?;
+        let sizes: Vec<f64> = parameters.iter().zip(model.parameters()).map(|(p, v)| size(p, *v)).collect();
         let (reference, _) = self.compute(&model, EngineName::Adj, 0.0)?;
         let mut rows = Vec::new();
         for &name in engines {
@@ -108,7 +109,7 @@ impl Bench<'_> {
                 rows.push(match self.compute(&model, name, perturbation.unwrap_or(0.0)) {
                     Ok((table, time_ratio)) => EngineRow {
                         values: shown(&table, quantities, &parameters),
-                        error: differences(&table, &reference, model.parameters()),
+                        error: differences(&table, &reference, &sizes),
                         sweeps: table.sweeps,
                         cost: table.cost,
                         time_ratio,
@@ -121,9 +122,7 @@ impl Bench<'_> {
                 });
             }
         }
-        let unit = |q: &QuantityName, p: &ParameterPlan| {
-            format!("{}/{}", q.unit().0, p.variable.unit.replace("degC", "K"))
-        };
+        let unit = |q: &QuantityName, p: &ParameterPlan| p.variable.slope_unit(q.unit().0);
         Ok(EngineComparison {
             bearing: self.study.bearings[label.bearing].name.clone(),
             operating_point: self.study.points[label.point].name.clone(),
@@ -182,6 +181,11 @@ fn shown(table: &GradientTable, quantities: &[QuantityName], parameters: &[&Para
         row.iter().zip(parameters).map(|(g, p)| g / scale * p.variable.scale.0).collect()
     };
     table.rows.iter().zip(quantities).map(row).collect()
+}
+
+/// What a change of a parameter is measured by: its value, or the width of its box where it is zero.
+fn size(plan: &ParameterPlan, value: f64) -> f64 {
+    if value == 0.0 { plan.upper - plan.lower } else { value }
 }
 
 /// Largest difference of elasticities in each row, relative to the row's largest elasticity.

@@ -45,7 +45,7 @@ impl Faults {
 
     /// What stands in the document at a path.
     pub fn raw(&self, path: &str) -> Option<&Value> {
-        self.raw.pointer(&format!("/{}", path.replace(['.', '['], "/").replace(']', "")))
+        self.raw.pointer(&pointer(path))
     }
 
     /// Notes a mistake.
@@ -56,6 +56,11 @@ impl Faults {
     /// The mistakes noted.
     pub fn into_list(self) -> Vec<(String, String)> {
         self.list
+    }
+
+    /// How many mistakes were noted so far.
+    pub fn count(&self) -> usize {
+        self.list.len()
     }
 
     /// Whether anything is wrong.
@@ -140,6 +145,22 @@ impl Faults {
             self.add(path, format!("must be {words}, found {found}"));
         }
     }
+}
+
+/// Notes every key of the list that is given although it is not among the used ones.
+macro_rules! refuse_others {
+    ($faults:expr, $file:expr, $path:expr, $why:expr, $used:expr, [$($key:ident),* $(,)?]) => {{
+        let used: &[&str] = &$used;
+        $(if !used.contains(&stringify!($key)) {
+            $faults.unused(&$file.$key, &$crate::study::faults::join($path, stringify!($key)), $why);
+        })*
+    }};
+}
+pub(super) use refuse_others;
+
+/// JSON pointer of a path like `parameters[2].lower`.
+pub(super) fn pointer(path: &str) -> String {
+    format!("/{}", path.replace(['.', '['], "/").replace(']', ""))
 }
 
 /// Path of a key below another.

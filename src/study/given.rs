@@ -91,6 +91,7 @@ fn plain(problem: &str) -> String {
         e if e.starts_with("f64") => "a number",
         e if e.starts_with('u') => "a whole number that is not negative",
         e if e.starts_with("a string") => "text in quotes",
+        e if e.starts_with("a boolean") => "true or false",
         other => other,
     };
     format!("expected {words}")

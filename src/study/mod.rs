@@ -10,23 +10,40 @@
 
 mod bearings;
 mod build;
+mod characterise;
+mod characteristic;
 mod check;
-mod design;
+mod constraints;
 mod document;
 mod engines;
 mod faults;
 mod file;
+mod film;
+mod fit;
 mod given;
+mod heat;
+mod lexicon;
+mod loads;
 mod machine;
+mod methods;
 mod observe;
+mod oil;
+mod parameters;
 mod plans;
+mod rheology;
+mod roughness;
 mod run;
 mod schema;
 mod sections;
+mod shapes;
+mod supply;
 mod table;
+mod variables;
+mod viscosity;
 mod vocabulary;
 
 pub use build::{CaseLabel, LimitLabel, Plan, plan};
+pub use characterise::characterise;
 pub use check::Study;
 pub use document::Format;
 pub use engines::{EngineComparison, EngineRow, Sweep, compare_engines};
@@ -34,11 +51,15 @@ pub use engines::{EngineComparison, EngineRow, Sweep, compare_engines};
 pub use faults::{Fault, StudyErrors};
 pub use file::StudyFile;
 pub use given::Given;
-pub use plans::{BearingPlan, ConstraintPlan, FilmPlan, OperatingPoint, ParameterPlan};
+pub use plans::{
+    BearingPlan, ConstraintPlan, FilmPlan, HeatPlan, OilPlan, OperatingPoint, ParameterPlan, RoughnessPlan,
+    SupplyPlan,
+};
 pub use run::run;
 pub use schema::schema;
 
-pub use vocabulary::{QuantityName, Variable};
+pub use variables::Variable;
+pub use vocabulary::QuantityName;
 
 /// Version of the study format this program reads.
 pub const FORMAT: &str = "stribeck-study/1";

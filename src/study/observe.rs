@@ -4,8 +4,9 @@ use super::build::{CaseLabel, Plan};
 use super::check::Study;
 use super::vocabulary::QuantityName;
 use crate::cranktrain::{BearingOutput, JournalBearing};
-use crate::dae::{At, Dae};
-use crate::film::Gap;
+use crate::dae::At;
+use crate::film::{Axial, FilmModel, FilmSite, Gap};
+use crate::laws::ZERO_CELSIUS_K;
 use crate::optimise::Evaluated;
 use crate::orbit::Orbit;
 use crate::report::{Curves, Extremum, Loss, OrbitReport, PressureReport};
@@ -30,12 +31,11 @@ pub(super) fn loss(orbit: &Orbit) -> Loss {
     let mean = |output: BearingOutput| {
         orbit.outputs.iter().map(|y| y[output.index()]).sum::<f64>() / orbit.steps() as f64
     };
-    let hydrodynamic_w = mean(BearingOutput::Loss);
-    // Smooth surfaces do not touch: the film model has no asperity contact.
+    let (total_w, contact_w) = (mean(BearingOutput::Loss), mean(BearingOutput::ContactLoss));
     Loss {
-        total_w: hydrodynamic_w,
-        hydrodynamic_w,
-        contact_w: 0.0,
+        total_w,
+        hydrodynamic_w: total_w - contact_w,
+        contact_w,
         dissipation_w: mean(BearingOutput::Dissipation),
     }
 }
@@ -54,6 +54,11 @@ pub(super) fn total_loss(study: &Study, cases: &[CaseLabel], at: &Evaluated) -> 
     sum
 }
 
+/// The bearing of a case at a design, with the film temperature that was found.
+pub(super) fn found(plan: &Plan, case: usize, x: &[f64], orbit: &Orbit) -> Option<JournalBearing> {
+    plan.problem.model(case, x).ok().and_then(|model| orbit.model(&model).ok())
+}
+
 /// Curves of one case at the design `x`, with those of the start beside them.
 pub(super) fn curves(
     study: &Study,
@@ -64,10 +69,10 @@ pub(super) fn curves(
     start: Option<&Evaluated>,
 ) -> Option<Curves> {
     let label = plan.cases[case];
-    let model = plan.problem.model(case, x).ok()?;
+    let model = found(plan, case, x, &at.orbits[case])?;
     let now = Trace::of(&model, &at.orbits[case]);
     let before = start.and_then(|s| {
-        let model = plan.problem.model(case, &plan.start).ok()?;
+        let model = found(plan, case, &plan.start, &s.orbits[case])?;
         Some(Trace::of(&model, &s.orbits[case]))
     });
     let before = before.unwrap_or_default();
@@ -82,12 +87,15 @@ pub(super) fn curves(
         gap_max_um: now.gap_max_um,
         pressure_max_mpa: now.pressure_mpa,
         start_pressure_max_mpa: before.pressure_mpa,
+        contact_max_mpa: now.contact_mpa,
         loss_w: now.loss_w,
+        contact_loss_w: now.contact_loss_w,
         start_loss_w: before.loss_w,
         dissipation_w: now.dissipation_w,
         side_flow_l_min: now.side_flow_l_min,
         load_kn: now.load_kn,
         pressure_map_mpa: now.map_mpa,
+        fill_map: now.fill_map,
         width_mm: model.setup().width_m * 1e3,
     })
 }
@@ -99,41 +107,61 @@ struct Trace {
     film_min_um: Vec<f64>,
     gap_max_um: Vec<f64>,
     pressure_mpa: Vec<f64>,
+    contact_mpa: Vec<f64>,
     loss_w: Vec<f64>,
+    contact_loss_w: Vec<f64>,
     dissipation_w: Vec<f64>,
     side_flow_l_min: Vec<f64>,
     load_kn: Vec<[f64; 2]>,
     map_mpa: Vec<Vec<f64>>,
+    fill_map: Vec<Vec<f64>>,
 }
 
 impl Trace {
     fn of(model: &JournalBearing, orbit: &Orbit) -> Self {
         let mut trace = Self::default();
-        let mut rate = vec![0.0; model.states()];
         let mut highest = f64::NEG_INFINITY;
-        let film = &model.setup().film;
+        let (film, mut room) = (model.film(), Vec::new());
         for n in 0..orbit.steps() {
-            orbit.rate(model, n, &mut rate);
-            let at = At { t_s: orbit.time_s(n), z: orbit.state(n, 0), rate: &rate };
-            let (u, q, y) = (model.film_input(at), model.film_unknowns(at.z), &orbit.outputs[n]);
-            let pressure = film.pressure_max_pa(&u, q);
+            let at = At { t_s: orbit.time_s(n), z: orbit.state(n, 0), rate: &[] };
+            let site = model.film_site(at, &mut room);
+            let (u, q, y) = (site.input, model.film_unknowns(at.z), &orbit.outputs[n]);
+            let pressure = film.pressure_max_pa(&site, q);
             trace.angle_deg.push((at.t_s * model.setup().speed_rad_s).to_degrees());
             trace.eccentricity.push(u.eccentricity_m.map(|e| e / u.clearance_m));
-            trace.film_min_um.push(Gap::minimum_m(&u) * 1e6);
-            trace.gap_max_um.push(Gap::maximum_m(&u) * 1e6);
+            let [low, high] = gap_range_m(film, &site);
+            trace.film_min_um.push(low * 1e6);
+            trace.gap_max_um.push(high * 1e6);
             trace.pressure_mpa.push(pressure * 1e-6);
+            trace.contact_mpa.push(film.contact_max_pa(&site, q) * 1e-6);
             trace.loss_w.push(y[BearingOutput::Loss.index()]);
+            trace.contact_loss_w.push(y[BearingOutput::ContactLoss.index()]);
             trace.dissipation_w.push(y[BearingOutput::Dissipation.index()]);
             trace.side_flow_l_min.push(y[BearingOutput::SideFlow.index()] / QuantityName::SideFlow.unit().1);
             trace.load_kn.push(model.drive(at.t_s).load_n.map(|f| f * 1e-3));
             if pressure > highest {
                 highest = pressure;
-                let map = film.pressure_map_pa(&u, q);
+                let map = film.pressure_map_pa(&site, q);
                 trace.map_mpa =
                     map.into_iter().map(|row| row.into_iter().map(|p| p * 1e-6).collect()).collect();
+                if film.conserves_mass() {
+                    trace.fill_map = film.fill_map(&site, q);
+                }
             }
         }
         trace
+    }
+}
+
+/// Smallest and largest gap: in closed form for the aligned cylindrical bearing, else the exact ones over the cells.
+fn gap_range_m(film: &dyn FilmModel, site: &FilmSite) -> [f64; 2] {
+    match film.mesh() {
+        Some(mesh) if !site.shape_m.is_empty() || mesh.axial == Axial::Full => {
+            let mut gap = vec![0.0; mesh.cells()];
+            Gap::fill(mesh, site, &mut gap);
+            gap.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], h| [low.min(*h), high.max(*h)])
+        }
+        _ => [Gap::minimum_m(&site.input), Gap::maximum_m(&site.input)],
     }
 }
 
@@ -155,6 +183,9 @@ pub(super) fn orbit_report(model: &JournalBearing, orbit: &Orbit, c: &Curves) ->
         max_specific_load_mpa: extreme(&load, 1.0),
         max_friction_loss_w: extreme(&c.loss_w, 1.0),
         mean_side_flow_l_min: c.side_flow_l_min.iter().sum::<f64>() / c.side_flow_l_min.len() as f64,
+        max_contact_pressure_mpa: extreme(&c.contact_max_mpa, 1.0),
+        mean_contact_loss_w: orbit.mean(BearingOutput::ContactLoss.index()),
+        film_temperature_c: model.film_temperature_k() - ZERO_CELSIUS_K,
         viscosity_mpa_s: model.viscosity_pa_s() * 1e3,
         steps: orbit.steps(),
         cycles: orbit.cycles,
@@ -164,12 +195,5 @@ pub(super) fn orbit_report(model: &JournalBearing, orbit: &Orbit, c: &Curves) ->
 
 /// Cells over all steps at which the film has a kink.
 pub(super) fn weakly_active(model: &JournalBearing, orbit: &Orbit) -> usize {
-    let mut rate = vec![0.0; model.states()];
-    (0..orbit.steps())
-        .map(|n| {
-            orbit.rate(model, n, &mut rate);
-            let at = At { t_s: orbit.time_s(n), z: orbit.state(n, 0), rate: &rate };
-            model.setup().film.weakly_active(&model.film_input(at), model.film_unknowns(at.z))
-        })
-        .sum()
+    (0..orbit.steps()).map(|n| model.film().weakly_active(model.film_unknowns(orbit.state(n, 0)))).sum()
 }

@@ -1,8 +1,11 @@
 //! Checked pieces of a study, in SI units: what the checks hand on.
 
-use super::file::{CavitationName, FilmModelName};
-use super::vocabulary::{QuantityName, Variable};
-use crate::cranktrain::LoadTable;
+use super::file::{CavitationName, CavityShearName, FilmModelName};
+use super::variables::Variable;
+use super::vocabulary::QuantityName;
+use crate::cranktrain::{BearingParameter, BearingShape, LoadTable, Tilt};
+use crate::film::{Feed, Oil, Roughness, all_symmetric};
+use crate::laws::Viscosity;
 use crate::optimise::Sense;
 
 /// Where the load of a planned bearing comes from.
@@ -28,7 +31,101 @@ pub struct BearingPlan {
     pub journal_mass_kg: f64,
     /// How many there are.
     pub count: u32,
+    /// How the journal stands to the shell's axis.
+    pub tilt: Tilt,
+    /// Oil supply.
+    pub supply: Option<SupplyPlan>,
+    /// Rough surfaces.
+    pub roughness: Option<RoughnessPlan>,
+    /// Heat balance over the cycle.
+    pub heat: Option<HeatPlan>,
+    /// Shapes of the surfaces.
+    pub shapes: Vec<BearingShape>,
     pub(super) load: LoadPlan,
+}
+
+impl BearingPlan {
+    /// Value of what can be varied; none for what belongs to the oil.
+    pub(super) fn value(&self, parameter: BearingParameter) -> Option<f64> {
+        let rough = self.roughness.as_ref();
+        match parameter {
+            BearingParameter::Width => Some(self.width_m),
+            BearingParameter::Diameter => Some(self.diameter_m),
+            BearingParameter::DiametralClearance => Some(self.diametral_clearance_m),
+            BearingParameter::InletTemperature | BearingParameter::FilmTemperature => None,
+            BearingParameter::JournalRoughness => rough.map(|r| r.journal_m),
+            BearingParameter::ShellRoughness => rough.map(|r| r.shell_m),
+            BearingParameter::SupplyPressure => self.supply.as_ref().map(|s| s.pressure_pa),
+            BearingParameter::Tilt(axis) => match self.tilt {
+                Tilt::Given(tilt) => Some(tilt[axis]),
+                Tilt::Free => None,
+            },
+            BearingParameter::Shape(shape, k) => {
+                self.shapes.get(shape).and_then(|s| s.profile.coefficients().get(k).copied())
+            }
+        }
+    }
+
+    /// Whether bearing and film are symmetric about the mid-plane, whatever the values of the parameters that vary.
+    pub(super) fn symmetric(&self, tilt_varies: bool) -> bool {
+        self.tilt == Tilt::Given([0.0; 2])
+            && !tilt_varies
+            && self.supply.as_ref().is_none_or(|s| all_symmetric(&s.feeds))
+            && self.shapes.iter().all(|s| s.profile.symmetric())
+    }
+
+    /// Whether asperities may touch.
+    pub(super) fn has_contact(&self) -> bool {
+        self.roughness.as_ref().is_some_and(|r| r.film.contact.is_some())
+    }
+}
+
+/// A checked oil supply.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SupplyPlan {
+    /// Supply pressure above that of the surroundings, Pa.
+    pub pressure_pa: f64,
+    /// Openings.
+    pub feeds: Vec<Feed>,
+}
+
+/// Checked rough surfaces.
+#[derive(Debug, Clone)]
+pub struct RoughnessPlan {
+    /// Root mean square roughness of the journal, m.
+    pub journal_m: f64,
+    /// Root mean square roughness of the shell, m.
+    pub shell_m: f64,
+    /// What the film makes of them.
+    pub film: Roughness,
+}
+
+/// A checked heat balance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeatPlan {
+    /// Film temperature between inlet (0) and outlet (1) of the oil.
+    pub film_share: f64,
+    /// Heat conducted away per kelvin above the surroundings, W/K.
+    pub conductance_w_k: f64,
+    /// Temperature of the surroundings, K.
+    pub ambient_k: f64,
+}
+
+/// A checked oil.
+#[derive(Debug, Clone)]
+pub struct OilPlan {
+    /// Viscosity over temperature.
+    pub viscosity: Viscosity,
+    /// Temperature at the inlet, K.
+    pub inlet_temperature_k: f64,
+    /// Film less inlet temperature, K: given, or where a heat balance starts.
+    pub film_rise_k: f64,
+    /// Pressure and shear.
+    pub laws: Oil,
+    /// Density times heat capacity, J/(m3 K); zero without a heat balance.
+    pub volumetric_heat_j_m3_k: f64,
+    /// Where its viscosity comes from, in words for the report.
+    pub(super) source: String,
 }
 
 /// A checked operating point.
@@ -81,6 +178,8 @@ pub struct FilmPlan {
     pub model: FilmModelName,
     /// Rupture.
     pub cavitation: CavitationName,
+    /// Shear in the cavity.
+    pub cavity_shear: CavityShearName,
     /// Columns.
     pub cells_around: usize,
     /// Cells across half of the width.
@@ -89,4 +188,13 @@ pub struct FilmPlan {
     pub side_pressure_pa: f64,
     /// Cavitation pressure above that of the surroundings (usually below zero), Pa.
     pub cavitation_pressure_pa: f64,
+}
+
+impl FilmPlan {
+    /// Whether oil is kept account of, but none comes in over the edges.
+    pub(super) fn runs_dry(&self) -> bool {
+        self.model == FilmModelName::Reynolds
+            && self.cavitation == CavitationName::MassConserving
+            && self.side_pressure_pa <= self.cavitation_pressure_pa
+    }
 }

@@ -2,7 +2,8 @@
 
 use super::build::{Plan, plan};
 use super::check::Study;
-use super::file::FilmModelName;
+use super::faults::pointer;
+use super::methods::methods;
 use super::observe;
 use super::vocabulary::QuantityName;
 use crate::gradient::{GradientTable, taylor_table};
@@ -84,8 +85,9 @@ fn report(
             .filter_map(|c| observe::curves(study, plan, c, &minimum.x, &known.optimum, start))
             .collect();
         for (case, c) in all.iter().enumerate() {
-            if let Ok(model) = plan.problem.model(case, &minimum.x) {
-                report.orbit.push(observe::orbit_report(&model, &known.optimum.orbits[case], c));
+            let orbit = &known.optimum.orbits[case];
+            if let Some(model) = observe::found(plan, case, &minimum.x, orbit) {
+                report.orbit.push(observe::orbit_report(&model, orbit, c));
             }
         }
         report.constraints = constraints(study, plan, minimum, &known.optimum, &all);
@@ -148,14 +150,19 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
             seconds: 0.0,
         },
         assumptions: assumptions(study),
-        provenance: Provenance {
-            program: env!("CARGO_PKG_NAME").to_owned(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            methods: methods(study),
-            study: study.to_json(),
-        },
+        provenance: provenance(study),
     };
     Findings { report, curves: Vec::new(), cylinder: observe::cylinder(study).1 }
+}
+
+/// What the answer to a study rests on.
+pub(super) fn provenance(study: &Study) -> Provenance {
+    Provenance {
+        program: env!("CARGO_PKG_NAME").to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        methods: methods(study),
+        study: study.to_json(),
+    }
 }
 
 fn design(study: &Study, x: &[f64]) -> Vec<DesignValue> {
@@ -256,10 +263,13 @@ fn constraints(
             Sense::AtMost => value / c.limit - 1.0,
         };
         let active = excess > -ACTIVE_GAP && multiplier > ACTIVE * objective;
-        // Outputs hold the smooth maximum over the cells; the exact one stands in the curves.
+        // Outputs hold the smooth extremum over the cells; the exact one stands in the curves.
+        let largest = |curve: &[f64]| curve.iter().copied().fold(0.0, f64::max);
         let exact_value = match c.quantity {
-            QuantityName::MaxFilmPressure => {
-                curves[label.case].pressure_max_mpa.iter().copied().fold(0.0, f64::max)
+            QuantityName::MaxFilmPressure => largest(&curves[label.case].pressure_max_mpa),
+            QuantityName::MaxContactPressure => largest(&curves[label.case].contact_max_mpa),
+            QuantityName::MinFilmThickness => {
+                curves[label.case].film_min_um.iter().copied().fold(f64::INFINITY, f64::min)
             }
             _ => orbit.value(&exact) / scale,
         };
@@ -343,10 +353,7 @@ fn case_rows(
                     .zip(&parameters)
                     .map(|(g, p)| g / scale * p.variable.scale.0)
                     .collect(),
-                units: parameters
-                    .iter()
-                    .map(|p| format!("{unit}/{}", p.variable.unit.replace("degC", "K")))
-                    .collect(),
+                units: parameters.iter().map(|p| p.variable.slope_unit(unit)).collect(),
                 verdict: crate::gradient::verdict(&check),
                 check,
             }
@@ -354,38 +361,15 @@ fn case_rows(
         .collect()
 }
 
-fn assumptions(study: &Study) -> Vec<Assumption> {
+pub(super) fn assumptions(study: &Study) -> Vec<Assumption> {
     let values = study.to_json();
     let map = study.file.assumptions.value().cloned().unwrap_or_default();
     map.into_iter()
         .map(|(key, reason)| {
-            let found = values.pointer(&format!("/{}", key.replace('.', "/")));
+            let found = values.pointer(&pointer(&key));
             let value =
                 found.map_or_else(String::new, |v| v.as_str().map_or_else(|| v.to_string(), str::to_owned));
             Assumption { key, value, reason }
         })
         .collect()
-}
-
-/// Laws and methods in use, with their sources.
-fn methods(study: &Study) -> Vec<String> {
-    let mut list = vec![match study.film.model {
-        FilmModelName::Reynolds => {
-            "Film: Reynolds (1886) equation by finite volumes; rupture after Swift (1932) and Stieber (1933); shear all around, \
-             in the ruptured part too"
-        }
-        FilmModelName::Mobility => "Film: short bearing, Ocvirk (1952), Booker's mobility method (1965)",
-    }];
-    if matches!(study.viscosity, crate::laws::Viscosity::Walther { .. }) {
-        list.push("Oil: Walther (1931), ASTM D341, through the data sheet's two points");
-    }
-    list.extend([
-        "Load: rigid slider-crank at constant speed, two-mass connecting rod",
-        "Orbit: backward differences (Gear 1971) with constant steps, closed periodically",
-        "Gradient: discrete adjoint of the periodic orbit or its alternatives FW, BW, CEN, TRA",
-        "Optimiser: sequential quadratic programming (Nocedal and Wright 2006), damped BFGS (Powell 1978), sub-problem by \
-         Clarabel, framework argmin",
-        "Smooth extrema: power norm, on the safe side of the exact extremum",
-    ]);
-    list.into_iter().map(str::to_owned).collect()
 }

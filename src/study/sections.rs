@@ -1,109 +1,18 @@
-//! Checks of the sections that stand for themselves: oil, film, orbit, objective, gradient, optimiser, assumptions.
+//! Checks of the sections that stand for themselves: orbit, objective, gradient, optimiser, assumptions.
 
 use super::Given;
-use super::faults::{Faults, join, without_nulls};
+use super::faults::{Faults, join, pointer, without_nulls};
 use super::file::{
-    CavitationName, FilmFile, FilmModelName, GradientFile, MethodName, ObjectiveFile, OilFile,
-    OperatingPointFile, OptimiserFile, OrbitFile, SchemeName, StudyFile,
+    GradientFile, MethodName, ObjectiveFile, OperatingPointFile, OptimiserFile, OrbitFile, SchemeName,
+    StudyFile,
 };
-use super::machine::zero;
-use super::plans::{FilmPlan, OperatingPoint};
+use super::plans::OperatingPoint;
 use crate::gradient::EngineName;
-use crate::laws::Viscosity;
 use crate::optimise::SqpOptions;
 use crate::orbit::{OrbitOptions, Scheme};
 
-pub(super) fn oil(file: &mut StudyFile, faults: &mut Faults) -> Option<(Viscosity, f64, f64)> {
-    faults.need(&file.oil, "oil");
-    let Given::Value(oil) = &mut file.oil else { return None };
-    faults.unknown::<OilFile>(&oil.unknown, "oil");
-    let inlet = faults.need(&oil.inlet_temperature, "oil.inlet_temperature").map(|v| v.si());
-    faults.range(
-        inlet,
-        "oil.inlet_temperature",
-        |v| (223.15..=473.15).contains(&v),
-        "between -50 degC and 200 degC",
-    );
-    let rise = faults.or(&mut oil.film_temperature_rise, "oil.film_temperature_rise", zero("0 K")).si();
-    faults.range(
-        Some(rise),
-        "oil.film_temperature_rise",
-        |v| (0.0..=150.0).contains(&v),
-        "between 0 K and 150 K",
-    );
-    let viscosity = if !oil.dynamic_viscosity.is_absent() {
-        let eta = faults.get(&oil.dynamic_viscosity, "oil.dynamic_viscosity");
-        let why = "dynamic_viscosity is given";
-        faults.unused(&oil.kinematic_viscosity_40c, "oil.kinematic_viscosity_40c", why);
-        faults.unused(&oil.kinematic_viscosity_100c, "oil.kinematic_viscosity_100c", why);
-        faults.unused(&oil.density_15c, "oil.density_15c", why);
-        let eta = eta.map(|eta| eta.si());
-        faults.range(eta, "oil.dynamic_viscosity", |v| v > 0.0, "above zero");
-        eta.map(|viscosity_pa_s| Viscosity::Constant { viscosity_pa_s })
-    } else {
-        let nu_40 =
-            faults.need(&oil.kinematic_viscosity_40c, "oil.kinematic_viscosity_40c").map(|v| v.si() * 1e6);
-        let nu_100 =
-            faults.need(&oil.kinematic_viscosity_100c, "oil.kinematic_viscosity_100c").map(|v| v.si() * 1e6);
-        let density = faults.need(&oil.density_15c, "oil.density_15c").map(|v| v.si());
-        faults.range(
-            density,
-            "oil.density_15c",
-            |v| (500.0..=2000.0).contains(&v),
-            "between 500 and 2000 kg/m3",
-        );
-        let law = Viscosity::from_data_sheet(nu_40?, nu_100?, density?);
-        law.map_err(|e| faults.add("oil.kinematic_viscosity_40c", e.to_string())).ok()
-    };
-    Some((viscosity?, inlet?, rise))
-}
-
-pub(super) fn film(f: &mut FilmFile, faults: &mut Faults) -> Option<FilmPlan> {
-    faults.unknown::<FilmFile>(&f.unknown, "film");
-    let model = faults.or(&mut f.model, "film.model", FilmModelName::Reynolds);
-    if model == FilmModelName::Mobility {
-        let why = "film.model is \"mobility\"";
-        faults.unused(&f.cavitation, "film.cavitation", why);
-        faults.unused(&f.cells_around, "film.cells_around", why);
-        faults.unused(&f.cells_across_half, "film.cells_across_half", why);
-        faults.unused(&f.side_pressure, "film.side_pressure", why);
-        faults.unused(&f.cavitation_pressure, "film.cavitation_pressure", why);
-        return Some(FilmPlan {
-            model,
-            cavitation: CavitationName::SwiftStieber,
-            cells_around: 0,
-            cells_across_half: 0,
-            side_pressure_pa: 0.0,
-            cavitation_pressure_pa: 0.0,
-        });
-    }
-    let cavitation = faults.or(&mut f.cavitation, "film.cavitation", CavitationName::SwiftStieber);
-    let around = faults.or(&mut f.cells_around, "film.cells_around", 72);
-    let across = faults.or(&mut f.cells_across_half, "film.cells_across_half", 8);
-    let side = faults.or(&mut f.side_pressure, "film.side_pressure", zero("0 bar")).si();
-    let cavity = faults.or(&mut f.cavitation_pressure, "film.cavitation_pressure", zero("0 bar")).si();
-    faults.range(
-        Some(around as f64),
-        "film.cells_around",
-        |v| (16.0..=2000.0).contains(&v),
-        "between 16 and 2000",
-    );
-    faults.range(
-        Some(across as f64),
-        "film.cells_across_half",
-        |v| (1.0..=200.0).contains(&v),
-        "between 1 and 200",
-    );
-    faults.range(Some(cavity), "film.cavitation_pressure", |v| v <= side, "at or below the side pressure");
-    Some(FilmPlan {
-        model,
-        cavitation,
-        cells_around: around,
-        cells_across_half: across,
-        side_pressure_pa: side,
-        cavitation_pressure_pa: cavity,
-    })
-}
+/// Default sharpness of smooth extrema.
+pub(super) const SHARPNESS: f64 = 200.0;
 
 pub(super) fn orbit_options(o: &mut OrbitFile, faults: &mut Faults) -> OrbitOptions {
     faults.unknown::<OrbitFile>(&o.unknown, "orbit");
@@ -202,7 +111,7 @@ pub(super) fn optimiser(file: &mut StudyFile, faults: &mut Faults) -> Option<(Sq
         max_iterations: faults.or(&mut o.max_iterations, &at("max_iterations"), defaults.max_iterations),
         step_limit: faults.or(&mut o.step_limit, &at("step_limit"), defaults.step_limit),
     };
-    let sharpness = faults.or(&mut o.aggregate_sharpness, &at("aggregate_sharpness"), 200.0);
+    let sharpness = faults.or(&mut o.aggregate_sharpness, &at("aggregate_sharpness"), SHARPNESS);
     faults.range(Some(options.tolerance), &at("tolerance"), |v| v > 0.0 && v < 1.0, "above 0 and below 1");
     faults.range(
         Some(options.max_iterations as f64),
@@ -230,8 +139,7 @@ pub(super) fn assumptions(file: &mut StudyFile, faults: &mut Faults) {
     let Some(map) = faults.get(&file.assumptions, "assumptions") else { return };
     let values = without_nulls(serde_json::to_value(&*file).unwrap_or_default());
     for path in map.keys() {
-        let pointer = format!("/{}", path.replace('.', "/"));
-        if values.pointer(&pointer).is_none() && faults.raw(path).is_none() {
+        if values.pointer(&pointer(path)).is_none() && faults.raw(path).is_none() {
             faults.add(&format!("assumptions.{path}"), format!("there is no key '{path}' in this study"));
         }
     }

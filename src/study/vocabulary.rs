@@ -1,6 +1,6 @@
-//! The words of a study: quantities and design variables.
+//! The words of a study: quantities.
 
-use crate::cranktrain::{BearingOutput, BearingParameter};
+use crate::cranktrain::BearingOutput;
 use crate::orbit::{Quantity, Reduction};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -19,24 +19,35 @@ pub enum QuantityName {
     SpecificLoad,
     /// Mean oil flow out of both edges.
     SideFlow,
+    /// Largest pressure of touching asperities in the cycle, a mean over summits and valleys.
+    MaxContactPressure,
+    /// Mean friction loss of touching asperities: the wear that is to be expected.
+    ContactLoss,
 }
 
 impl QuantityName {
+    /// Whether it is about touching asperities.
+    pub(super) fn is_of_contact(self) -> bool {
+        matches!(self, Self::MaxContactPressure | Self::ContactLoss)
+    }
+
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 7] = [
         Self::MeanFrictionLoss,
         Self::MinFilmThickness,
         Self::MaxFilmPressure,
         Self::SpecificLoad,
         Self::SideFlow,
+        Self::MaxContactPressure,
+        Self::ContactLoss,
     ];
 
     /// Unit in reports, and its size in SI units.
     pub fn unit(self) -> (&'static str, f64) {
         match self {
-            Self::MeanFrictionLoss => ("W", 1.0),
+            Self::MeanFrictionLoss | Self::ContactLoss => ("W", 1.0),
             Self::MinFilmThickness => ("um", 1e-6),
-            Self::MaxFilmPressure | Self::SpecificLoad => ("MPa", 1e6),
+            Self::MaxFilmPressure | Self::SpecificLoad | Self::MaxContactPressure => ("MPa", 1e6),
             Self::SideFlow => ("l/min", 1e-3 / 60.0),
         }
     }
@@ -49,6 +60,8 @@ impl QuantityName {
             Self::MaxFilmPressure => "maximum film pressure",
             Self::SpecificLoad => "specific load",
             Self::SideFlow => "side flow",
+            Self::MaxContactPressure => "maximum contact pressure",
+            Self::ContactLoss => "contact loss",
         }
     }
 
@@ -60,6 +73,8 @@ impl QuantityName {
             Self::MaxFilmPressure => "max-film-pressure",
             Self::SpecificLoad => "specific-load",
             Self::SideFlow => "side-flow",
+            Self::MaxContactPressure => "max-contact-pressure",
+            Self::ContactLoss => "contact-loss",
         }
     }
 
@@ -80,45 +95,10 @@ impl QuantityName {
             // The load does not depend on the design, so its largest step does not move: no smoothing needed.
             Self::SpecificLoad => both(BearingOutput::SpecificLoad, Reduction::Max, Reduction::Max),
             Self::SideFlow => both(BearingOutput::SideFlow, Reduction::Mean, Reduction::Mean),
+            Self::MaxContactPressure => {
+                both(BearingOutput::ContactPeak, Reduction::SmoothMax(sharpness), Reduction::Max)
+            }
+            Self::ContactLoss => both(BearingOutput::ContactLoss, Reduction::Mean, Reduction::Mean),
         }
-    }
-}
-
-/// A property of a bearing or its oil that can be a design parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Variable {
-    /// Name within its section of the study.
-    pub key: &'static str,
-    /// What it is in the model.
-    pub parameter: BearingParameter,
-    /// Unit in reports.
-    pub unit: &'static str,
-    /// Size of that unit, and its zero, in SI units.
-    pub scale: (f64, f64),
-}
-
-impl Variable {
-    /// Variables of a bearing, written `<bearing>.<key>`.
-    pub const BEARING: [Self; 3] = [
-        Self { key: "width", parameter: BearingParameter::Width, unit: "mm", scale: (1e-3, 0.0) },
-        Self { key: "diameter", parameter: BearingParameter::Diameter, unit: "mm", scale: (1e-3, 0.0) },
-        Self {
-            key: "diametral_clearance",
-            parameter: BearingParameter::DiametralClearance,
-            unit: "um",
-            scale: (1e-6, 0.0),
-        },
-    ];
-    /// Variables of the oil, written `oil.<key>`, shared by all bearings.
-    pub const OIL: [Self; 1] = [Self {
-        key: "inlet_temperature",
-        parameter: BearingParameter::InletTemperature,
-        unit: "degC",
-        scale: (1.0, 273.15),
-    }];
-
-    /// A value in the unit of reports.
-    pub fn shown(&self, si: f64) -> f64 {
-        (si - self.scale.1) / self.scale.0
     }
 }

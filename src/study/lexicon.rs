@@ -1,0 +1,120 @@
+//! The names of parameters: what they stand for, what values they may take.
+
+use super::bearings::Bearings;
+use super::faults::Faults;
+use super::file::FilmModelName;
+use super::plans::{BearingPlan, FilmPlan};
+use super::variables::Variable;
+use crate::cranktrain::BearingParameter;
+
+/// All coefficients of a spline.
+const EVERY: &str = "coefficients[*]";
+/// Keys below a bearing that exist only with a section of their own.
+const DETAILS: [&str; 4] = ["roughness.", "supply.", "shapes.", "tilt_"];
+
+/// One thing a parameter of the file varies.
+pub(super) struct Target {
+    pub name: String,
+    pub bearing: Option<usize>,
+    pub variable: Variable,
+}
+
+/// What parameters are looked up in.
+pub(super) struct Lexicon<'a> {
+    pub bearings: &'a Bearings,
+    pub film: Option<&'a FilmPlan>,
+    pub inlet_k: Option<f64>,
+    /// The viscosity does not depend on the temperature.
+    pub constant: bool,
+}
+
+impl Lexicon<'_> {
+    /// What a name stands for; several for all coefficients of a spline.
+    pub fn targets(&self, name: &str, path: &str, faults: &mut Faults) -> Option<Vec<Target>> {
+        let (owner, key) = name.split_once('.').unwrap_or((name, ""));
+        let bearing = self.bearings.iter().position(|(b, _)| b == owner);
+        let list = match bearing {
+            _ if owner == "oil" => Variable::of_oil(),
+            Some(b) => self.of_bearing(b),
+            None => Vec::new(),
+        };
+        let fits = |found: &str| match key.strip_suffix(EVERY) {
+            Some(shape) => found.strip_prefix(shape).is_some_and(|rest| rest.starts_with("coefficients[")),
+            None => found == key,
+        };
+        let found: Vec<Target> = list
+            .into_iter()
+            .filter(|(found, _)| fits(found))
+            .map(|(key, variable)| Target { name: format!("{owner}.{key}"), bearing, variable })
+            .collect();
+        if let Some(first) = found.first() {
+            if self.constant && first.variable.parameter == BearingParameter::InletTemperature {
+                faults.add(path, "has no effect: oil.dynamic_viscosity is the same at every temperature");
+            }
+            return Some(found);
+        }
+        let broken = bearing.is_some_and(|b| self.bearings[b].1.is_none());
+        if !broken || !DETAILS.iter().any(|d| key.starts_with(d)) {
+            faults.add(path, format!("\"{name}\" is no parameter; choose from: {}", self.names()));
+        }
+        None
+    }
+
+    fn of_bearing(&self, bearing: usize) -> Vec<(String, Variable)> {
+        let tilts = self.film.is_none_or(|f| f.model == FilmModelName::Reynolds);
+        match &self.bearings[bearing].1 {
+            Some(plan) => Variable::of_bearing(plan, tilts),
+            None => Variable::of_any_bearing(),
+        }
+    }
+
+    /// All names, the coefficients of a spline together.
+    fn names(&self) -> String {
+        let mut names: Vec<String> = Vec::new();
+        for (b, (owner, _)) in self.bearings.iter().enumerate() {
+            for (key, _) in self.of_bearing(b) {
+                let key = match key.split_once("coefficients[") {
+                    Some((shape, _)) => format!("{shape}{EVERY}"),
+                    None => key,
+                };
+                names.push(format!("{owner}.{key}"));
+            }
+        }
+        names.dedup();
+        names.extend(Variable::of_oil().iter().map(|(key, _)| format!("oil.{key}")));
+        names.join(", ")
+    }
+
+    fn plan(&self, target: &Target) -> Option<&BearingPlan> {
+        target.bearing.and_then(|b| self.bearings[b].1.as_ref())
+    }
+
+    /// The value in the section of the target.
+    pub fn value(&self, target: &Target) -> Option<f64> {
+        match target.bearing {
+            None => self.inlet_k,
+            Some(_) => self.plan(target).and_then(|b| b.value(target.variable.parameter)),
+        }
+    }
+
+    /// Values a target may take at all, SI units.
+    pub fn allowed(&self, target: &Target) -> (f64, f64) {
+        let plan = self.plan(target);
+        let within = |most: f64| (-most, most);
+        match target.variable.parameter {
+            BearingParameter::InletTemperature | BearingParameter::FilmTemperature => (223.15, 473.15),
+            BearingParameter::DiametralClearance => (0.0, plan.map_or(0.02, |b| 0.02 * b.diameter_m)),
+            BearingParameter::Width | BearingParameter::Diameter => (0.0, 10.0),
+            BearingParameter::JournalRoughness | BearingParameter::ShellRoughness => (0.0, 50e-6),
+            BearingParameter::SupplyPressure => (self.film.map_or(0.0, |f| f.cavitation_pressure_pa), 1e8),
+            // More would let the centred journal touch the edges.
+            BearingParameter::Tilt(_) => within(plan.map_or(0.1, |b| b.diametral_clearance_m / b.width_m)),
+            BearingParameter::Shape(..) => match target.variable.unit {
+                "um" => within(1e-2),
+                "deg" => within(4.0 * std::f64::consts::PI),
+                _ if target.name.ends_with(".length_share") => (0.0, 1.0),
+                _ => within(1e3),
+            },
+        }
+    }
+}
