@@ -2,11 +2,11 @@
 
 use super::progress::Bars;
 use super::{
-    CheckArguments, EXIT_FILE, EXIT_STUDY, GradientArguments, RunArguments, SchemaArguments, exit_code,
-    faults, tables,
+    CheckArguments, EXIT_FILE, EXIT_INCOMPLETE, EXIT_STUDY, GradientArguments, RunArguments, SchemaArguments,
+    exit_code, faults, tables,
 };
 use crate::optimise::EvaluationError;
-use crate::report;
+use crate::report::{self, Characteristic, CharacteristicStatus};
 use crate::run::{Cancel, RunContext};
 use crate::study::{Format, Study, StudyErrors, Sweep, compare_engines};
 use std::io::{IsTerminal, Write};
@@ -84,7 +84,12 @@ pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
     let folder = a.out.clone().unwrap_or_else(|| Path::new("out").join(name));
     std::fs::create_dir_all(&folder).map_err(|e| Stop::File(folder.clone(), e))?;
     let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(study.optimiser.max_iterations));
-    let findings = crate::study::run(&study, RunContext { cancel: &cancel, progress: &bars });
+    let context = RunContext { cancel: &cancel, progress: &bars };
+    if let Some(found) = crate::study::characterise(&study, context) {
+        bars.finish();
+        return tabulated(&found, &folder, a.json);
+    }
+    let findings = crate::study::run(&study, context);
     bars.finish();
     report::write_folder(&findings, &folder).map_err(|e| Stop::File(folder.clone(), e))?;
     if a.json {
@@ -94,6 +99,22 @@ pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
         put(&format!("report: {}\n", folder.join("report.html").display()));
     }
     Ok(exit_code(findings.report.outcome.status))
+}
+
+/// Writes and prints a characteristic.
+fn tabulated(found: &Characteristic, folder: &Path, json: bool) -> Result<u8, Stop> {
+    report::write_characteristic(found, folder).map_err(|e| Stop::File(folder.to_owned(), e))?;
+    if json {
+        put(&(serde_json::to_string_pretty(found).unwrap_or_default() + "\n"));
+    } else {
+        put(&tables::characteristic(found));
+        put(&format!("report: {}\n", folder.join("report.html").display()));
+    }
+    Ok(match found.status {
+        CharacteristicStatus::Complete => 0,
+        CharacteristicStatus::Incomplete => EXIT_INCOMPLETE,
+        CharacteristicStatus::Cancelled => exit_code(crate::optimise::Outcome::Cancelled),
+    })
 }
 
 pub(super) fn check(a: &CheckArguments) -> Result<u8, Stop> {

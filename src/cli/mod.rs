@@ -19,6 +19,9 @@ pub const EXIT_FILE: u8 = 1;
 /// Exit code for a study (or command line) with mistakes.
 pub const EXIT_STUDY: u8 = 2;
 
+/// Exit code for a characteristic of which rows are missing.
+pub const EXIT_INCOMPLETE: u8 = 8;
+
 /// Exit code of an outcome: 0 only for a converged design.
 pub fn exit_code(outcome: Outcome) -> u8 {
     match outcome {
@@ -38,7 +41,7 @@ pub fn exit_code(outcome: Outcome) -> u8 {
     name = "stribeck",
     version,
     after_help = "Exit codes: 0 converged, 1 file error, 2 mistakes in the study or command line, \
-3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 130 cancelled."
+3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 8 rows of a characteristic are missing, 130 cancelled."
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -47,7 +50,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Finds the design with the least loss and writes a report.
+    /// Finds the design with the least loss (or tabulates a characteristic) and writes a report.
     Run(RunArguments),
     /// Checks a study and prints it with every default written out.
     Check(CheckArguments),

@@ -1,7 +1,7 @@
 //! Short tables for the terminal.
 
 use crate::optimise::Outcome;
-use crate::report::{AtBound, Report, short};
+use crate::report::{AtBound, Characteristic, CharacteristicColumn, Report, short};
 use crate::study::{EngineComparison, EngineRow};
 use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 use owo_colors::OwoColorize;
@@ -94,6 +94,49 @@ fn limits(report: &Report) -> Table {
         ]);
     }
     limits
+}
+
+/// The tables of a characteristic, the reference beside what was found.
+pub(super) fn characteristic(found: &Characteristic) -> String {
+    let mut text = format!("{}\n", found.title);
+    for reason in &found.failures {
+        text += &format!("missing: {reason}\n");
+    }
+    for t in &found.tables {
+        let unit = |c: &CharacteristicColumn| match c.unit.as_str() {
+            "1" => c.title.clone(),
+            unit => format!("{} [{unit}]", c.title),
+        };
+        let mut head = vec![unit(&t.varied)];
+        for c in &t.columns {
+            head.push(unit(c));
+            if !c.reference.is_empty() {
+                head.push("reference".to_owned());
+            }
+        }
+        let mut rows = table(&head.iter().map(String::as_str).collect::<Vec<_>>());
+        for n in 0..t.varied.values.len() {
+            let mut row = vec![maybe(t.varied.values[n])];
+            for c in &t.columns {
+                row.push(maybe(c.values[n]));
+                if !c.reference.is_empty() {
+                    row.push(maybe(c.reference[n]));
+                }
+            }
+            rows.add_row(row);
+        }
+        text += &format!("\n{}\n{rows}\n", t.name);
+        for c in t.columns.iter().filter(|c| c.largest_difference.is_some()) {
+            let unit = if c.unit == "deg" { "deg" } else { "%" };
+            text += &format!(
+                "{}: largest difference from the reference {} {unit}, {} % of the largest reference value\n",
+                c.title,
+                maybe(c.largest_difference),
+                maybe(c.difference_of_maximum_percent),
+            );
+        }
+    }
+    text
 }
 
 /// The gradient engines side by side.

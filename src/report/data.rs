@@ -91,13 +91,13 @@ pub struct DesignValue {
 /// Loss at one design.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Loss {
-    /// Mean friction loss (wall power), W.
+    /// Mean friction loss: power of the wall shear stress and of touching asperities, W.
     pub total_w: f64,
     /// Its hydrodynamic part, W.
     pub hydrodynamic_w: f64,
     /// Its asperity contact part, W; zero for smooth surfaces.
     pub contact_w: f64,
-    /// Power dissipated in the oil: wall power and squeeze power together, W.
+    /// Power dissipated in oil and contact: friction loss and squeeze power together, W.
     pub dissipation_w: f64,
 }
 
@@ -238,8 +238,14 @@ pub struct OrbitReport {
     pub max_specific_load_mpa: Extremum,
     /// Largest momentary friction loss.
     pub max_friction_loss_w: Extremum,
+    /// Largest pressure of touching asperities; zero for smooth surfaces.
+    pub max_contact_pressure_mpa: Extremum,
+    /// Mean friction loss of touching asperities, W.
+    pub mean_contact_loss_w: f64,
     /// Mean side flow, l/min.
     pub mean_side_flow_l_min: f64,
+    /// Temperature of the film, degrees Celsius: given, or the result of the heat balance.
+    pub film_temperature_c: f64,
     /// Dynamic viscosity of the film, mPa s.
     pub viscosity_mpa_s: f64,
     /// Steps per cycle.
@@ -311,11 +317,15 @@ pub struct Curves {
     pub pressure_max_mpa: Vec<f64>,
     /// The same at the start design.
     pub start_pressure_max_mpa: Vec<f64>,
-    /// Friction loss (wall power), W.
+    /// Largest contact pressure, MPa.
+    pub contact_max_mpa: Vec<f64>,
+    /// Friction loss: power of the wall shear stress and of touching asperities, W.
     pub loss_w: Vec<f64>,
+    /// Its asperity contact part, W.
+    pub contact_loss_w: Vec<f64>,
     /// The same at the start design.
     pub start_loss_w: Vec<f64>,
-    /// Dissipation, W.
+    /// Power dissipated in oil and contact, W.
     pub dissipation_w: Vec<f64>,
     /// Side flow, l/min.
     pub side_flow_l_min: Vec<f64>,
@@ -323,8 +333,20 @@ pub struct Curves {
     pub load_kn: Vec<[f64; 2]>,
     /// Film pressure (MPa) at the instant of its maximum: rows around, columns across.
     pub pressure_map_mpa: Vec<Vec<f64>>,
+    /// Share of the gap filled with oil at the same instant; empty unless the film keeps account of its oil.
+    pub fill_map: Vec<Vec<f64>>,
     /// Width of the bearing, mm.
     pub width_mm: f64,
+}
+
+/// Contact pressure below which pages do not speak of contact, MPa.
+pub(super) const TOUCH_MPA: f64 = 1e-3;
+
+impl Curves {
+    /// Whether the surfaces touch anywhere in the cycle.
+    pub fn touches(&self) -> bool {
+        self.contact_max_mpa.iter().any(|p| *p > TOUCH_MPA)
+    }
 }
 
 /// Report and curves.

@@ -1,19 +1,30 @@
 //! The figures of a report.
 
-use super::svg::{FOUND, LIMIT, SECOND, START, axis, over_cycle, render, styled};
-use super::{Curves, Report};
+use super::html::units;
+use super::svg::{
+    FOUND, LIMIT, SECOND, SKY, START, THIRD, axis, half, legend_below, over_cycle, render, styled, tight_axis,
+};
+use super::{CharacteristicColumn, Curves, Report};
 use kuva::prelude::*;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Columns of the pressure map at most; more would only make the page heavy.
 const MAP_COLUMNS: usize = 120;
+/// Room of a crank angle beside the orbit, in eccentricity ratios.
+const MARK_WIDTH: f64 = 0.22;
+/// The same upwards.
+const MARK_HEIGHT: f64 = 0.1;
+/// Ratio of the ends of a varied quantity above which its axis is logarithmic.
+const WIDE: f64 = 20.0;
+/// Ratio of largest to smallest value found above which the axis is logarithmic.
+const DECADES: f64 = 100.0;
 
 /// A closed cycle: the first value stands again at its end.
-fn line(x: &[f64], y: &[f64], cycle: f64, colour: &str, legend: &str) -> LinePlot {
+fn line(x: &[f64], y: &[f64], cycle: f64, colour: &str) -> LinePlot {
     let end = y.first().map(|y| (cycle, *y));
     let points = x.iter().copied().zip(y.iter().copied()).chain(end).filter(|p| p.1.is_finite());
-    LinePlot::new().with_data(points).with_color(colour).with_stroke_width(1.8).with_legend(legend)
+    LinePlot::new().with_data(points).with_color(colour).with_stroke_width(1.8)
 }
 
 fn cycle_deg(c: &Curves) -> f64 {
@@ -21,27 +32,48 @@ fn cycle_deg(c: &Curves) -> f64 {
     (c.crank_angle_deg.last().copied().unwrap_or(0.0) * n / (n - 1.0).max(1.0)).round()
 }
 
-/// A quantity over the cycle: start and design found, with a limit if there is one.
+/// A curve over the cycle.
+struct Series<'a> {
+    values: &'a [f64],
+    colour: &'static str,
+    legend: &'static str,
+    /// Whether it is a part of another one; drawn dashed, so that both are seen where they are one.
+    part: bool,
+}
+
+impl<'a> Series<'a> {
+    fn new(values: &'a [f64], colour: &'static str, legend: &'static str) -> Self {
+        Self { values, colour, legend, part: false }
+    }
+
+    fn part(values: &'a [f64], colour: &'static str, legend: &'static str) -> Self {
+        Self { values, colour, legend, part: true }
+    }
+
+    fn plot(&self, c: &Curves) -> LinePlot {
+        let plot = line(&c.crank_angle_deg, self.values, cycle_deg(c), self.colour);
+        if self.part { plot.with_dashed() } else { plot }
+    }
+}
+
+/// A quantity over the cycle, with a limit if there is one. A single curve needs no legend.
 fn over_angle(
     c: &Curves,
-    series: [(&[f64], &str, &str); 3],
+    series: &[Series],
     limit: Option<f64>,
+    frame: fn(Layout) -> Layout,
     label: &str,
     name: &str,
 ) -> String {
-    let mut plots: Vec<Plot> = Vec::new();
-    for (y, colour, legend) in series.iter().filter(|s| s.0.len() == c.crank_angle_deg.len()) {
-        plots.push(line(&c.crank_angle_deg, y, cycle_deg(c), colour, legend).into());
-    }
-    let everything = series.iter().flat_map(|s| s.0.iter().copied()).chain(limit);
-    // Room for the legend above the curves.
-    let (top, step) = axis(everything.map(|v| 1.15 * v));
-    let mut layout = over_cycle(styled(Layout::auto_from_plots(&plots)), cycle_deg(c))
+    let shown: Vec<&Series> = series.iter().filter(|s| s.values.len() == c.crank_angle_deg.len()).collect();
+    let legend = |plot: LinePlot, s: &Series| if shown.len() > 1 { plot.with_legend(s.legend) } else { plot };
+    let plots: Vec<Plot> = shown.iter().map(|s| legend(s.plot(c), s).into()).collect();
+    let (top, step) = axis(shown.iter().flat_map(|s| s.values.iter().copied()).chain(limit));
+    let mut layout = over_cycle(frame(styled(Layout::auto_from_plots(&plots))), cycle_deg(c))
         .with_y_label(label)
         .with_y_axis_min(0.0)
         .with_y_axis_max(top)
-        .with_y_tick_step(step)
-        .with_legend_position(LegendPosition::InsideTopCenter);
+        .with_y_tick_step(step);
     if let Some(limit) = limit {
         let reference = ReferenceLine::horizontal(limit).with_color(LIMIT).with_stroke_width(1.2);
         layout = layout.with_reference_line(reference.with_label("limit"));
@@ -52,18 +84,23 @@ fn over_angle(
 /// Smallest film thickness over the cycle.
 pub fn film(c: &Curves, limit: Option<f64>, name: &str) -> String {
     let series =
-        [(&c.start_film_min_um[..], START, "start"), (&c.film_min_um, FOUND, "design"), (&[], "", "")];
-    over_angle(c, series, limit, "smallest film thickness [µm]", name)
+        [Series::new(&c.start_film_min_um, START, "start"), Series::new(&c.film_min_um, FOUND, "design")];
+    over_angle(c, &series, limit, half, "film thickness [µm]", name)
 }
 
 /// Largest film pressure over the cycle.
 pub fn pressure(c: &Curves, limit: Option<f64>, name: &str) -> String {
     let series = [
-        (&c.start_pressure_max_mpa[..], START, "start"),
-        (&c.pressure_max_mpa, FOUND, "design"),
-        (&[], "", ""),
+        Series::new(&c.start_pressure_max_mpa, START, "start"),
+        Series::new(&c.pressure_max_mpa, FOUND, "design"),
     ];
-    over_angle(c, series, limit, "largest film pressure [MPa]", name)
+    over_angle(c, &series, limit, half, "film pressure [MPa]", name)
+}
+
+/// Largest contact pressure over the cycle.
+pub fn contact(c: &Curves, limit: Option<f64>, name: &str) -> String {
+    let series = [Series::new(&c.contact_max_mpa, FOUND, "design")];
+    over_angle(c, &series, limit, half, "contact pressure [MPa]", name)
 }
 
 /// Cylinder pressure over the cycle, (degrees, MPa).
@@ -81,20 +118,114 @@ pub fn cylinder(curve: &[(f64, f64)], name: &str) -> String {
     render(plots, layout, name)
 }
 
-/// Friction loss over the cycle.
+/// Columns over the varied one: what was found as curves, the reference as points.
+pub fn characteristic(x: &CharacteristicColumn, columns: &[&CharacteristicColumn], name: &str) -> String {
+    let plots: Vec<Plot> = columns
+        .iter()
+        .zip([FOUND, SECOND, THIRD])
+        .enumerate()
+        .flat_map(|(k, (c, colour))| column(x, c, colour, (columns.len() > 1).then_some(k)))
+        .collect();
+    let label = |c: &CharacteristicColumn| match c.unit.as_str() {
+        "1" => c.title.clone(),
+        unit => format!("{} [{}]", c.title, units(unit)),
+    };
+    let layout = half(styled(Layout::auto_from_plots(&plots)))
+        .with_x_label(label(x))
+        .with_y_label(columns.first().map_or_else(String::new, |c| label(c)));
+    let across = x.values.iter().flatten().copied().collect::<Vec<f64>>();
+    let up = columns.iter().flat_map(|c| c.values.iter().chain(&c.reference)).flatten().copied();
+    let layout = scaled_up(scaled_across(layout, &across), &up.collect::<Vec<f64>>());
+    render(plots, layout, name)
+}
+
+/// Smallest and largest value.
+fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)))
+}
+
+/// Ticks that read as the numbers in the tables.
+fn plain() -> TickFormat {
+    TickFormat::Custom(Arc::new(super::short))
+}
+
+/// The axis of a varied quantity: from zero, or logarithmic where it spans much.
+fn scaled_across(layout: Layout, values: &[f64]) -> Layout {
+    let (low, high) = range(values);
+    if low > 0.0 && high > WIDE * low {
+        return layout.with_log_x().with_x_axis_min(low).with_x_axis_max(high).with_x_tick_format(plain());
+    }
+    let (end, step) = tight_axis(values.iter().copied());
+    layout.with_x_axis_min(0.0).with_x_axis_max(end).with_x_tick_step(step)
+}
+
+/// The axis of what was found: from zero, or in decades where it spans some.
+fn scaled_up(layout: Layout, values: &[f64]) -> Layout {
+    let (low, high) = range(values);
+    if low > 0.0 && high > DECADES * low {
+        let decade = |v: f64| 10f64.powf(v);
+        return layout
+            .with_log_y()
+            .with_y_axis_min(decade(low.log10().floor()))
+            .with_y_axis_max(decade(high.log10().ceil()))
+            .with_y_tick_format(plain());
+    }
+    let (end, step) = tight_axis(values.iter().copied());
+    layout.with_y_axis_min(low.min(0.0)).with_y_axis_max(end).with_y_tick_step(step)
+}
+
+/// One column of a characteristic: a curve, and points where there is a reference. `place` tells its place among
+/// several in one figure, of which the first is the sum of the others.
+fn column(
+    x: &CharacteristicColumn,
+    y: &CharacteristicColumn,
+    colour: &str,
+    place: Option<usize>,
+) -> Vec<Plot> {
+    let points = |v: &[Option<f64>]| -> Vec<(f64, f64)> {
+        x.values.iter().zip(v).filter_map(|(x, y)| x.zip(*y)).collect()
+    };
+    let reference = points(&y.reference);
+    let mut curve = LinePlot::new().with_data(points(&y.values)).with_color(colour).with_stroke_width(1.8);
+    if place.is_some_and(|k| k > 0) {
+        curve = curve.with_dashed();
+    }
+    if place.is_some() {
+        curve = curve.with_legend(y.title.as_str());
+    } else if !reference.is_empty() {
+        curve = curve.with_legend("computed");
+    }
+    let mut plots: Vec<Plot> = vec![curve.into()];
+    if !reference.is_empty() {
+        let (marked, legend) = match place {
+            Some(_) => (colour, format!("{}: reference", y.title)),
+            None => (SECOND, "reference".to_owned()),
+        };
+        let marks = ScatterPlot::new().with_data(reference).with_color(marked).with_size(4.0);
+        plots.push(marks.with_legend(legend).into());
+    }
+    plots
+}
+
+/// Friction loss over the cycle; split into its parts where surfaces touch.
 pub fn loss(c: &Curves, name: &str) -> String {
-    let series = [
-        (&c.start_loss_w[..], START, "start: friction loss"),
-        (&c.loss_w, FOUND, "design: friction loss"),
-        (&c.dissipation_w, SECOND, "design: with squeeze power"),
+    let hydrodynamic: Vec<f64> = c.loss_w.iter().zip(&c.contact_loss_w).map(|(l, k)| l - k).collect();
+    let mut series = vec![
+        Series::new(&c.start_loss_w, START, "start"),
+        Series::new(&c.loss_w, FOUND, "design"),
+        Series::new(&c.dissipation_w, SECOND, "design: with squeeze power"),
     ];
-    over_angle(c, series, None, "power [W]", name)
+    if c.touches() {
+        series.push(Series::part(&hydrodynamic, SKY, "design: hydrodynamic"));
+        series.push(Series::part(&c.contact_loss_w, THIRD, "design: contact"));
+    }
+    over_angle(c, &series, None, legend_below, "friction loss [W]", name)
 }
 
 /// Load of the bearing over the cycle.
 pub fn load(c: &Curves, name: &str) -> String {
     let size: Vec<f64> = c.load_kn.iter().map(|l| l[0].hypot(l[1])).collect();
-    over_angle(c, [(&size, LIMIT, "load"), (&[], "", ""), (&[], "", "")], None, "load [kN]", name)
+    over_angle(c, &[Series::new(&size, LIMIT, "load")], None, half, "load [kN]", name)
 }
 
 /// Orbit of the journal in the clearance circle, at equal scale.
@@ -134,10 +265,20 @@ fn path(points: Vec<(f64, f64)>, colour: &str, legend: &str) -> Plot {
     LinePlot::new().with_data(points).with_color(colour).with_stroke_width(1.8).with_legend(legend).into()
 }
 
-/// Crank angles along the orbit.
+/// Crank angles along the orbit, where they do not stand on one another.
 fn marks(c: &Curves) -> Plot {
     let n = c.eccentricity.len();
-    let at: Vec<usize> = (0..8).map(|k| k * n / 8).collect();
+    let mut at: Vec<usize> = Vec::new();
+    for k in (0..8).map(|k| k * n / 8) {
+        let [x, y] = c.eccentricity[k];
+        let apart = |other: &usize| {
+            let [a, b] = c.eccentricity[*other];
+            (x - a).abs() > MARK_WIDTH || (y - b).abs() > MARK_HEIGHT
+        };
+        if at.iter().all(apart) {
+            at.push(k);
+        }
+    }
     let labels: Vec<String> = at.iter().map(|&k| format!("{:.0}°", c.crank_angle_deg[k])).collect();
     ScatterPlot::new()
         .with_data(at.iter().map(|&k| (c.eccentricity[k][0], c.eccentricity[k][1])))
@@ -148,46 +289,69 @@ fn marks(c: &Curves) -> Plot {
 }
 
 /// Film pressure over the unwrapped bearing at the instant of its maximum.
-pub fn map(c: &Curves, name: &str) -> String {
-    let around = c.pressure_map_mpa.len();
-    let every = around.div_ceil(MAP_COLUMNS).max(1);
-    let across = c.pressure_map_mpa.first().map_or(0, Vec::len);
-    let peak = |i: &usize| c.pressure_map_mpa[*i].iter().copied().fold(0.0, f64::max);
+pub fn pressure_map(c: &Curves, name: &str) -> String {
+    let top = c.pressure_map_mpa.iter().flatten().copied().fold(0.0f64, f64::max);
+    map(c, &c.pressure_map_mpa, top, "film pressure [MPa]", name)
+}
+
+/// Fill of the gap at the same instant; none for a film that does not know it.
+pub fn fill_map(c: &Curves, name: &str) -> Option<String> {
+    (!c.fill_map.is_empty()).then(|| map(c, &c.fill_map, 1.0, "filled share of the gap", name))
+}
+
+/// Where a picture of the unwrapped bearing is cut: its first row and the angle there. Not where the pressure is:
+/// opposite to 0 if the peak is near 0.
+fn cut(pressure: &[Vec<f64>]) -> (usize, f64) {
+    let around = pressure.len();
+    let peak = |i: &usize| pressure[*i].iter().copied().fold(0.0, f64::max);
     let highest = (0..around).max_by(|a, b| peak(a).total_cmp(&peak(b))).unwrap_or(0);
-    // The picture is cut where the pressure is not: opposite to 0 if the peak is near 0.
     let near_zero = highest < around / 4 || highest > 3 * around / 4;
-    let first_deg = if near_zero { -180.0 } else { 0.0 };
-    let first = if near_zero { around / 2 } else { 0 };
+    if near_zero { (around / 2, -180.0) } else { (0, 0.0) }
+}
+
+/// Colours of a grid from 0 to `top`; kuva spreads the map it is given over the values that occur.
+fn colours(grid: &[Vec<f64>], top: f64) -> ColorMap {
+    let every = || grid.iter().flatten().copied();
+    let low = every().fold(f64::INFINITY, f64::min);
+    let span = every().fold(f64::NEG_INFINITY, f64::max) - low;
+    ColorMap::Custom(Arc::new(move |v| ColorMap::Cividis.map(((low + v * span) / top).clamp(0.0, 1.0))))
+}
+
+/// A field over the unwrapped bearing, rows around and columns across, in colours from 0 to `top`.
+fn map(c: &Curves, field: &[Vec<f64>], top: f64, label: &str, name: &str) -> String {
+    let around = field.len();
+    let every = around.div_ceil(MAP_COLUMNS).max(1);
+    let across = field.first().map_or(0, Vec::len);
+    let (first, first_deg) = cut(&c.pressure_map_mpa);
     // kuva draws rows upwards: one row per axial cell, one column per angle.
-    let column = |i: usize| &c.pressure_map_mpa[(first + i) % around];
+    let column = |i: usize| &field[(first + i) % around];
     let grid: Vec<Vec<f64>> =
         (0..across).map(|j| (0..around).step_by(every).map(|i| column(i)[j]).collect()).collect();
-    let top = grid.iter().flatten().copied().fold(0.0f64, f64::max);
+    let colours = colours(&grid, top);
     let half_cell = 180.0 / around as f64 * every as f64;
     let plots: Vec<Plot> = vec![
         QuiverPlot::new()
             .with_color_map(ColorMap::Cividis)
             .with_color_range(0.0, top)
-            .with_color_legend_label("film pressure [MPa]")
+            .with_color_legend_label(label)
             .into(),
         Heatmap::new()
             .with_data(grid)
-            .with_color_map(ColorMap::Cividis)
+            .with_color_map(colours)
             .with_x_range(first_deg - half_cell, first_deg + 360.0 - half_cell)
             .with_y_range(-c.width_mm / 2.0, c.width_mm / 2.0)
             .with_cell_size(1.0)
             .into(),
     ];
-    let layout = styled(Layout::auto_from_plots(&plots))
+    let layout = half(styled(Layout::auto_from_plots(&plots)))
         .with_x_label("angle around the shell [deg]")
         .with_y_label("axial position [mm]")
         .with_x_axis_min(first_deg - half_cell)
         .with_x_axis_max(first_deg + 360.0 - half_cell)
         .with_y_axis_min(-c.width_mm / 2.0)
         .with_y_axis_max(c.width_mm / 2.0)
-        .with_x_tick_step(45.0)
-        .with_show_grid(false)
-        .with_height(240.0);
+        .with_x_tick_step(90.0)
+        .with_show_grid(false);
     render(plots, layout, name)
 }
 
@@ -233,7 +397,6 @@ pub fn convergence(report: &Report, name: &str) -> String {
                 .with_color(LIMIT)
                 .with_stroke_width(1.2)
                 .with_label("tolerance"),
-        )
-        .with_legend_position(LegendPosition::InsideTopCenter);
-    render(plots, layout, name)
+        );
+    render(plots, legend_below(layout), name)
 }

@@ -1,11 +1,14 @@
 //! `report.html`: one self-contained page, the answer first, then the evidence.
 
+use super::data::TOUCH_MPA;
 use super::{Findings, figures};
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("report.html.j2");
+/// Style of all pages.
+pub(super) const STYLE: &str = include_str!("style.css");
 
 /// Figures of one working cycle.
 #[derive(Serialize)]
@@ -15,9 +18,11 @@ struct CycleFigures {
     orbit: String,
     film: String,
     pressure: String,
+    contact: Option<String>,
     loss: String,
     load: String,
-    map: String,
+    pressure_map: String,
+    fill_map: Option<String>,
 }
 
 /// The page as text.
@@ -36,27 +41,45 @@ pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
             orbit: figures::orbit(c, &format!("orbit-{k}")),
             film: figures::film(c, limit("min-film-thickness", &c.bearing), &format!("film-{k}")),
             pressure: figures::pressure(c, limit("max-film-pressure", &c.bearing), &format!("pressure-{k}")),
+            contact: c.touches().then(|| {
+                figures::contact(c, limit("max-contact-pressure", &c.bearing), &format!("contact-{k}"))
+            }),
             loss: figures::loss(c, &format!("loss-{k}")),
             load: figures::load(c, &format!("load-{k}")),
-            map: figures::map(c, &format!("map-{k}")),
+            pressure_map: figures::pressure_map(c, &format!("map-{k}")),
+            fill_map: figures::fill_map(c, &format!("fill-{k}")),
         })
         .collect();
     let convergence = (!report.history.is_empty()).then(|| figures::convergence(report, "convergence"));
     let cylinder = (!findings.cylinder.is_empty()).then(|| figures::cylinder(&findings.cylinder, "cylinder"));
-    let study = toml::to_string_pretty(&report.provenance.study).unwrap_or_default();
-    let mut environment = Environment::new();
-    environment.set_auto_escape_callback(|_| minijinja::AutoEscape::Html);
-    environment.add_filter("sig", significant);
-    environment.add_filter("sci", |v: f64| format!("{v:.1e}"));
-    environment.add_filter("words", |s: String| s.replace('-', " "));
+    let study = toml::to_string(&report.provenance.study).unwrap_or_default();
+    let mut environment = environment();
     environment.add_template("report", TEMPLATE)?;
     environment.get_template("report")?.render(context! {
         r => Value::from(Serde(report)),
         cycles => Value::from(Serde(cycles)),
         convergence,
         cylinder,
+        touch_mpa => TOUCH_MPA,
+        style => STYLE,
         study,
     })
+}
+
+/// What all templates can use.
+pub(super) fn environment() -> Environment<'static> {
+    let mut environment = Environment::new();
+    environment.set_auto_escape_callback(|_| minijinja::AutoEscape::Html);
+    environment.add_filter("sig", significant);
+    environment.add_filter("sci", |v: f64| format!("{v:.1e}"));
+    environment.add_filter("units", units);
+    environment.add_filter("words", |s: String| s.replace('-', " "));
+    environment
+}
+
+/// A unit as it is written in text.
+pub(super) fn units(unit: &str) -> String {
+    unit.replace("um", "µm").replace("degC", "°C")
 }
 
 /// A number with four significant digits, or a dash for none.

@@ -3,12 +3,17 @@
 //! [`Report`] is the content of `report.json`; [`Curves`] hold what the plots and `orbit.csv` need. Both are filled by the
 //! floor above; here they are written. Deliberately not here: how the numbers came about.
 
+mod characteristic;
 mod csv_file;
 mod data;
 mod figures;
 mod html;
 mod svg;
 
+pub use characteristic::{
+    CHARACTERISTIC_FORMAT, Characteristic, CharacteristicColumn, CharacteristicStatus, CharacteristicTable,
+    characteristic_csv, characteristic_html, write_characteristic,
+};
 pub use csv_file::orbit_csv;
 pub use data::*;
 pub use html::html;

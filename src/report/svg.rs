@@ -8,13 +8,21 @@ pub const START: &str = "#8a8a8a";
 pub const FOUND: &str = "#0072B2";
 /// Second curve of the same design: vermilion.
 pub const SECOND: &str = "#D55E00";
+/// Third curve of the same design: bluish green.
+pub const THIRD: &str = "#009E73";
+/// Fourth curve of the same design: sky blue.
+pub const SKY: &str = "#56B4E9";
 /// Limits: black.
 pub const LIMIT: &str = "#222222";
 
 /// Width of a figure in pixels.
 pub const WIDTH: f64 = 720.0;
+/// Width of a figure beside another.
+pub const HALF_WIDTH: f64 = 504.0;
 /// Height of a curve figure in pixels.
 pub const HEIGHT: f64 = 300.0;
+/// Height of a figure beside another.
+const HALF_HEIGHT: f64 = 270.0;
 
 /// Common style of a figure.
 pub fn styled(layout: Layout) -> Layout {
@@ -34,6 +42,16 @@ pub fn styled(layout: Layout) -> Layout {
         .with_height(HEIGHT)
 }
 
+/// A figure that stands beside another; its legend lies below it.
+pub fn half(layout: Layout) -> Layout {
+    legend_below(layout).with_width(HALF_WIDTH).with_height(HALF_HEIGHT).with_label_size(12)
+}
+
+/// Puts the legend below the figure, where it hides nothing.
+pub fn legend_below(layout: Layout) -> Layout {
+    layout.with_legend_position(LegendPosition::OutsideBottomColumns).with_legend_box(false)
+}
+
 /// A crank angle axis over one cycle.
 pub fn over_cycle(layout: Layout, cycle_deg: f64) -> Layout {
     layout
@@ -44,13 +62,22 @@ pub fn over_cycle(layout: Layout, cycle_deg: f64) -> Layout {
         .with_x_tick_format(TickFormat::Integer)
 }
 
-/// Upper end of an axis that starts at zero and shows all of `values`, and a step for its ticks.
+/// Upper end of an axis that starts at zero, with some room above all of `values`, and a step for its ticks.
 pub fn axis(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    up_to(1.04, values)
+}
+
+/// Like [`axis`], without room: the last value may stand at the end.
+pub fn tight_axis(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    up_to(1.0 - 1e-9, values)
+}
+
+fn up_to(room: f64, values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let top = values.into_iter().filter(|v| v.is_finite()).fold(0.0f64, f64::max).max(1e-12);
     let raw = top / 5.0;
     let decade = 10f64.powf(raw.log10().floor());
     let step = [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|m| m * decade).find(|s| *s >= raw).unwrap_or(raw);
-    ((top * 1.04 / step).ceil() * step, step)
+    ((top * room / step).ceil() * step, step)
 }
 
 /// Renders plots; clip paths get names that are unique in the page and the same on every run.
@@ -94,5 +121,7 @@ mod tests {
         assert_eq!(axis([3.0, 8.7]), (10.0, 2.0));
         let (top, step) = axis([307.0]);
         assert!(top >= 307.0 && (top / step).fract() == 0.0);
+        assert_eq!(tight_axis([0.3, 0.98]).0, 1.0);
+        assert_eq!(tight_axis([1500.0]).0, 1500.0);
     }
 }
