@@ -9,3 +9,4 @@ mod gradients;
 mod literature;
 mod main_job;
 mod orbits;
+mod study_physics;

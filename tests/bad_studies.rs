@@ -1,11 +1,11 @@
 //! Study files with mistakes: every one is reported, at its place, in words; nothing panics.
 
-use crate::common::here;
+use crate::common::{here, merged};
 use proptest::prelude::*;
 use stribeck::study::{Format, Study, StudyErrors};
 
 fn main_text() -> String {
-    std::fs::read_to_string(here("studies/operational-170x215.toml")).unwrap()
+    std::fs::read_to_string(here(crate::common::SMOOTH)).unwrap()
 }
 
 fn errors(text: &str) -> StudyErrors {
@@ -45,7 +45,7 @@ fn each_kind_of_mistake_has_its_words() {
     let one = |from: &str, to: &str| {
         let text = main_text();
         assert!(text.contains(from), "{from}");
-        let list = errors(&text.replacen(from, to, 1)).faults;
+        let list = errors(&merged(&text.replacen(from, to, 1))).faults;
         list.iter().map(|f| format!("{}: {}", f.path, f.message)).collect::<Vec<_>>().join(" | ")
     };
     let cases = [
@@ -63,7 +63,7 @@ fn each_kind_of_mistake_has_its_words() {
         ("diametral_clearance = \"110 um\"", "diametral_clearance = \"11 mm\""),
         ("diametral_clearance = \"110 um\"", "diametral_clearance = \"-110 um\""),
         ("[oil]", "[film]\ncells_around = 4\nmodel = \"jfo\"\n[oil]"),
-        ("[oil]", "[film]\nmodel = \"mobility\"\ncells_around = 72\n[oil]"),
+        ("[film]\ncavitation = \"swift-stieber\"", "[film]\nmodel = \"mobility\"\ncells_around = 72"),
         ("[oil]", "[gradient]\nengine = \"FD\"\n[oil]"),
         ("upper = \"90 degC\"", "upper = \"74 degC\""),
         ("at_least = \"3 um\"", "at_least = \"3 um\"\nat_most = \"4 um\""),
@@ -94,6 +94,116 @@ fn each_kind_of_mistake_has_its_words() {
         ("title = ", "title = \"twice\"\ntitle = "),
     ];
     let list: Vec<String> = cases.iter().map(|(from, to)| format!("{to:?}\n    {}", one(from, to))).collect();
+    insta::assert_snapshot!(list.join("\n"));
+}
+
+/// Mistakes in the keys of oil, supply, roughness, shapes and heat: what is replaced, and by what.
+const PHYSICS: &[(&str, &str)] = &[
+    // Oil.
+    (SHEET, "grade = \"SAE 10W-40\"\n"),
+    (SHEET, ""),
+    (SHEET, "grade = \"SAE 40\"\ndensity_15c = \"895 kg/m3\"\n"),
+    (SHEET, "dynamic_viscosity = \"10 mPa s\"\nviscosity_law = \"vogel\"\n"),
+    (SHEET, "viscosity_points = [{ temperature = \"40 degC\", dynamic_viscosity = \"0.1 Pa s\" }]\n"),
+    (SHEET, "viscosity_points = [{ temperature = \"40 degC\" }, { temp = \"80 degC\" }, 3]\n"),
+    (
+        SHEET,
+        "grade = \"mine\"\n[grades.mine]\nkinematic_viscosity_40c = \"139 cSt\"\n[grades.\"sae-40\"]\n[oil]\n",
+    ),
+    ("[oil]\n", "[oil]\npiezoviscosity = \"barus\"\n"),
+    ("[oil]\n", "[oil]\npressure_viscosity_coefficient = \"20 1/GPa\"\nheat_capacity = \"2 kJ/(kg K)\"\n"),
+    (
+        "[oil]\n",
+        "[oil]\nshear_thinning = \"cross\"\nrelaxation_time = \"2 us\"\nsecond_newtonian_ratio = 1.2\n",
+    ),
+    (
+        "[oil]\n",
+        "[oil]\nshear_thinning = \"carreau\"\nrelaxation_time = \"2 um\"\nshear_exponent = 1.5\nsecond_newtonian_ratio = 0.5\n",
+    ),
+    // Film and supply.
+    ("cavitation = \"swift-stieber\"", "cavitation = \"mass-conserving\""),
+    ("cavitation = \"swift-stieber\"", "cavitation = \"swift-stieber\"\ncavity_shear = \"fill\""),
+    (KIND, "kind = \"big-end\"\nsupply = { pressure = \"-2 bar\", openings = [] }"),
+    (
+        KIND,
+        "kind = \"big-end\"\nsupply = { pressure = \"4 bar\", openings = [{ kind = \"hole\", angle = \"0 deg\", extent = \"9 deg\" }, { kind = \"slot\" }, { angle = \"0 deg\" }] }",
+    ),
+    (
+        KIND,
+        "kind = \"big-end\"\nsupply = { openings = [{ kind = \"pocket\", angle = \"0 deg\", extent = \"30 deg\", width_share = 0.5, centre = 0.7 }, { kind = \"circumferential-groove\", width_share = 0.2, start = \"10 deg\" }] }",
+    ),
+    // Roughness.
+    (KIND, "kind = \"big-end\"\nroughness = { journal = \"0 um\", shell = \"0 um\" }"),
+    (
+        KIND,
+        "kind = \"big-end\"\nroughness = { journal = \"0.2 um\", shell = \"0.3 mm\", shell_peklenik = 12, elastic_factor = 0.003, asperity_product = 0.04 }",
+    ),
+    (
+        KIND,
+        "kind = \"big-end\"\nroughness = { journal = \"0.2 um\", shell = \"0.3 um\", contact = \"none\", boundary_friction = 0.1 }",
+    ),
+    // Heat.
+    (KIND, "kind = \"big-end\"\nheat_balance = { film_share = 1.5, ambient_temperature = \"50 degC\" }"),
+    // Tilt and shapes.
+    (KIND, "kind = \"big-end\"\nfree_tilt = true\ntilt_x = \"0.01 deg\""),
+    (KIND, "kind = \"big-end\"\ntilt_x = \"5 mrad\"\nfree_tilt = \"no\""),
+    (
+        KIND,
+        "kind = \"big-end\"\nshapes = [{ name = \"a b\", kind = \"barrel\", offset = \"3 um\" }, { kind = \"lemon\" }]",
+    ),
+    (
+        KIND,
+        "kind = \"big-end\"\nshapes = [{ name = \"a\", kind = \"cone\", height = \"-90 um\" }, { name = \"a\", kind = \"edge-relief\", depth = \"5 um\", length_share = 0 }]",
+    ),
+    (KIND, "kind = \"big-end\"\nshapes = [{ name = \"a\", kind = \"cone\", height = \"-90 um\" }]"),
+    (
+        KIND,
+        "kind = \"big-end\"\nshapes = [{ name = \"a\", kind = \"spline\", around = 3, across = 2 }, { name = \"b\", kind = \"spline\", around = 4, across = 3, coefficients = [\"1 um\"] }]",
+    ),
+    (
+        KIND,
+        "kind = \"big-end\"\nshapes = [{ name = \"a\", kind = \"table\", table = { columns = [\"angle_deg\", \"zeta\", \"height_um\"], rows = [[0, 0, 1], [90, 1, 2]] } }]",
+    ),
+    // What the mobility film does not know.
+    (
+        "[film]\ncavitation = \"swift-stieber\"",
+        "[film]\nmodel = \"mobility\"\n[bearings.big_end]\ntilt_x = \"0 deg\"\nsupply = {}\nshapes = []\n[oil]\npiezoviscosity = \"none\"",
+    ),
+    // Parameters and constraints.
+    ("name = \"big_end.width\"", "name = \"big_end.roughness.shell\""),
+    (
+        "name = \"big_end.width\"\nlower = \"45 mm\"\nupper = \"65 mm\"",
+        "name = \"big_end.tilt_x\"\nlower = \"-1 deg\"\nupper = \"0.05 deg\"",
+    ),
+    (
+        KIND,
+        "kind = \"big-end\"\nshapes = [{ name = \"s\", kind = \"spline\", around = 4, across = 3 }]\n[[parameters]]\nname = \"big_end.shapes.s.coefficients[*]\"\nlower = \"-1 um\"\nupper = \"5\"\n[[parameters]]\nname = \"big_end.shapes.s.coefficients[12]\"\n[bearings.big_end]",
+    ),
+    ("quantity = \"max-film-pressure\"", "quantity = \"max-contact-pressure\""),
+    (
+        "quantity = \"max-film-pressure\"\nat_most = \"300 MPa\"",
+        "quantity = \"contact-loss\"\nat_least = \"3 W\"",
+    ),
+    (
+        "\"oil.inlet_temperature\" = ",
+        "\"bearings.big_end.supply.pressure\" = \"x\"\n\"oil.inlet_temperature\" = ",
+    ),
+];
+const KIND: &str = "kind = \"big-end\"";
+const SHEET: &str = "kinematic_viscosity_40c = \"139 mm2/s\"\nkinematic_viscosity_100c = \"14 mm2/s\"\ndensity_15c = \"895 kg/m3\"\n";
+
+#[test]
+fn mistakes_in_the_physics_have_their_words_too() {
+    let main = main_text();
+    // Reasons of assumptions about the data sheet are not what is looked at.
+    let main: String =
+        main.lines().filter(|l| !l.starts_with("\"oil.kin")).map(|l| format!("{l}\n")).collect();
+    let one = |from: &str, to: &str| {
+        assert!(main.contains(from), "{from}");
+        let list = errors(&merged(&main.replacen(from, to, 1))).faults;
+        list.iter().map(|f| format!("    {}: {}", f.path, f.message)).collect::<Vec<_>>().join("\n")
+    };
+    let list: Vec<String> = PHYSICS.iter().map(|(from, to)| format!("{to:?}\n{}", one(from, to))).collect();
     insta::assert_snapshot!(list.join("\n"));
 }
 

@@ -1,154 +1,222 @@
 //! Every derivative of every film, against differences and against its own transpose.
+//!
+//! States are random and away from the switches of cavitation; everything a film depends on moves at once: unknowns, rate
+//! of the content, all scalars, the shape of the surfaces. Boundary conditions differ from film to film ([`films`]).
 
+use crate::common::films::{Case, all_films};
 use proptest::prelude::*;
 use stribeck::film::{
-    Axial, Cavitation, FilmInput, FilmModel, FilmOutput, Mesh, Reynolds, ShortFilm, steady,
+    Axial, FilmChange, FilmInput, FilmLinear, FilmModel, FilmOutput, FilmSite, FilmTangent, FilmWeights,
 };
 
-fn films() -> Vec<Box<dyn FilmModel>> {
-    let mesh = || Mesh::new(24, 3, Axial::Half);
-    vec![
-        Box::new(Reynolds { cavitation: Cavitation::None, ..Reynolds::new(mesh()) }),
-        Box::new(Reynolds {
-            side_pressure_pa: 2e5,
-            cavitation_pressure_pa: -5e4,
-            sharpness: 20.0,
-            held_columns: vec![(5, 3e5)],
-            ..Reynolds::new(Mesh::new(24, 4, Axial::Full))
-        }),
-        Box::new(ShortFilm::new(20.0)),
-    ]
+/// A point in everything a film depends on, and by subtraction a direction.
+struct Point {
+    q: Vec<f64>,
+    rate: Vec<f64>,
+    input: FilmInput,
+    shape_m: Vec<f64>,
 }
 
-fn input(x: &[f64; 9]) -> FilmInput {
+/// An input of the sizes of a bearing; only tilted films see the tilt.
+fn input(x: &[f64], tilted: bool) -> FilmInput {
+    let tilt = if tilted { 1e-4 } else { 0.0 };
     FilmInput {
-        eccentricity_m: [30e-6 * x[0], 30e-6 * x[1]],
-        velocity_m_s: [2e-3 * x[2], 2e-3 * x[3]],
-        speed_rad_s: 100.0 + 40.0 * x[4],
-        width_m: 0.05 + 0.02 * x[5],
-        diameter_m: 0.1 + 0.03 * x[6],
-        clearance_m: 60e-6 + 10e-6 * x[7],
-        viscosity_pa_s: 0.01 + 0.005 * x[8],
+        eccentricity_m: [25e-6 * x[0], 25e-6 * x[1]],
+        tilt_rad: [tilt * x[2], tilt * x[3]],
+        velocity_m_s: [2e-3 * x[4], 2e-3 * x[5]],
+        speed_rad_s: 100.0 + 40.0 * x[6],
+        width_m: 0.05 + 0.02 * x[7],
+        diameter_m: 0.1 + 0.03 * x[8],
+        clearance_m: 60e-6 + 10e-6 * x[9],
+        viscosity_pa_s: 0.01 + 0.005 * x[10],
+        journal_roughness_m: 5e-6 + 2e-6 * x[11],
+        shell_roughness_m: 3e-6 + 1e-6 * x[12],
+        supply_pressure_pa: 2e5 + 1e5 * x[13],
     }
 }
 
-/// `u + t du`.
-fn moved(u: &FilmInput, du: &FilmInput, t: f64) -> FilmInput {
-    FilmInput {
-        eccentricity_m: [0, 1].map(|a| u.eccentricity_m[a] + t * du.eccentricity_m[a]),
-        velocity_m_s: [0, 1].map(|a| u.velocity_m_s[a] + t * du.velocity_m_s[a]),
-        speed_rad_s: u.speed_rad_s + t * du.speed_rad_s,
-        width_m: u.width_m + t * du.width_m,
-        diameter_m: u.diameter_m + t * du.diameter_m,
-        clearance_m: u.clearance_m + t * du.clearance_m,
-        viscosity_pa_s: u.viscosity_pa_s + t * du.viscosity_pa_s,
+impl Point {
+    /// A state at least 1e4 Pa away from every switch.
+    fn of(case: &Case, x: &[f64], noise: &[f64], turn: usize) -> Self {
+        let n = case.film.unknowns();
+        let number = |k: usize| noise[(k + turn) % noise.len()];
+        let q = |k: usize| if number(k) > 0.0 { 1e4 + 5e7 * number(k) } else { -1e4 + 8e6 * number(k) };
+        let shape = |k: usize| 4e-6 * number(7 * k + 3);
+        Self {
+            q: (0..n).map(q).collect(),
+            rate: (0..n).map(|k| 1e-3 * number(3 * k + 1)).collect(),
+            input: input(x, case.tilted()),
+            shape_m: if case.shaped { (0..n).map(shape).collect() } else { Vec::new() },
+        }
+    }
+
+    /// A direction: unknowns by a share of themselves, so that none changes sign.
+    fn direction(case: &Case, at: &Self, dx: &[f64], noise: &[f64]) -> Self {
+        let (to, zero) = (Self::of(case, dx, noise, 11), [0.0; 14]);
+        let share = |k: usize| 0.5 * noise[(5 * k + 2) % noise.len()] * at.q[k];
+        Self {
+            q: (0..at.q.len()).map(share).collect(),
+            input: to.input.moved(&input(&zero, case.tilted()), -1.0),
+            ..to
+        }
+    }
+
+    fn moved(&self, d: &Self, t: f64) -> Self {
+        let add = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + t * b).collect();
+        Self {
+            q: add(&self.q, &d.q),
+            rate: add(&self.rate, &d.rate),
+            input: self.input.moved(&d.input, t),
+            shape_m: add(&self.shape_m, &d.shape_m),
+        }
+    }
+
+    fn site(&self, journal_angle_rad: f64) -> FilmSite<'_> {
+        FilmSite { input: self.input, shape_m: &self.shape_m, journal_angle_rad }
+    }
+
+    fn change(&self) -> FilmChange<'_> {
+        FilmChange { q: &self.q, rate: &self.rate, input: self.input, shape_m: &self.shape_m }
     }
 }
 
-fn inner(a: &FilmInput, b: &FilmInput) -> f64 {
-    (0..2)
-        .map(|k| a.eccentricity_m[k] * b.eccentricity_m[k] + a.velocity_m_s[k] * b.velocity_m_s[k])
-        .sum::<f64>()
-        + a.speed_rad_s * b.speed_rad_s
-        + a.width_m * b.width_m
-        + a.diameter_m * b.diameter_m
-        + a.clearance_m * b.clearance_m
-        + a.viscosity_pa_s * b.viscosity_pa_s
+/// Residual, content and outputs at a point.
+fn values(film: &dyn FilmModel, at: &Point, angle: f64) -> FilmTangent {
+    let (mut residual, mut content) = (vec![0.0; at.q.len()], vec![0.0; at.q.len()]);
+    film.residual(&at.site(angle), &at.q, &at.rate, &mut residual);
+    film.content(&at.site(angle), &at.q, &mut content);
+    FilmTangent { residual, content, output: film.output(&at.site(angle), &at.q) }
 }
 
-fn numbers(y: &FilmOutput) -> [f64; 7] {
-    [y.force_n[0], y.force_n[1], y.loss_w, y.dissipation_w, y.gap_min_m, y.pressure_peak_pa, y.side_flow_m3_s]
+fn largest(v: &[f64]) -> f64 {
+    v.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()))
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn dot_abs(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a * b).abs()).sum()
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
     fn tangents_are_limits_of_differences_and_cotangents_their_transposes(
-        x in prop::array::uniform9(-1.0f64..1.0), dx in prop::array::uniform9(-1.0f64..1.0),
-        noise in prop::collection::vec(-1.0f64..1.0, 96),
+        x in prop::collection::vec(-1.0f64..1.0, 14), dx in prop::collection::vec(-1.0f64..1.0, 14),
+        noise in prop::collection::vec(-1.0f64..1.0, 97), angle in -7.0f64..7.0, alpha in 1.0f64..1e4,
     ) {
-        let u = input(&x);
-        // A direction of the size of the quantities themselves.
-        let (a, b) = (input(&dx), input(&[0.0; 9]));
-        let du = moved(&a, &b, -1.0);
-        for film in films() {
-            let q = steady(film.as_ref(), &u).unwrap().q;
-            let n = q.len();
-            let top = q.iter().fold(1.0f64, |m, v| m.max(v.abs()));
-            let dq: Vec<f64> = noise.iter().cycle().take(n).map(|v| 0.1 * v * top).collect();
-            check_residual(film.as_ref(), &u, &q, &du, &noise);
-            check_outputs(film.as_ref(), &u, &q, &du, &dq);
+        for case in all_films() {
+            let at = Point::of(&case, &x, &noise, 0);
+            let along = Point::direction(&case, &at, &dx, &noise);
+            let tangent = case.film.tangent(&at.site(angle), &at.q, &at.rate, &along.change());
+            check_differences(&case, &at, &along, angle, &tangent);
+            check_transpose(&case, &at, &along, angle, &tangent, &noise);
+            check_linearised(&case, &at, &along, angle, alpha);
         }
     }
 }
 
-fn check_residual(film: &dyn FilmModel, u: &FilmInput, q: &[f64], du: &FilmInput, noise: &[f64]) {
-    let n = q.len();
-    if n == 0 {
-        return;
+fn check_differences(case: &Case, at: &Point, along: &Point, angle: f64, tangent: &FilmTangent) {
+    let (film, e) = (case.film.as_ref(), 1e-6);
+    let [plus, here, minus] = [e, 0.0, -e].map(|t| values(film, &at.moved(along, t), angle));
+    let fields = [
+        ("residual", &plus.residual, &minus.residual, &tangent.residual),
+        ("content", &plus.content, &minus.content, &tangent.content),
+    ];
+    for (what, plus, minus, tangent) in fields {
+        let size = largest(tangent);
+        for k in 0..tangent.len() {
+            let difference = (plus[k] - minus[k]) / (2.0 * e);
+            let miss = (difference - tangent[k]).abs() / size;
+            assert!(miss < 1e-6, "{}: {what} {k}: {difference} {} ({miss:.1e})", case.name, tangent[k]);
+        }
     }
-    // Pressures away from the edge of the cavity, so that a small step changes no active set.
-    let lifted: Vec<f64> = q.iter().map(|v| if *v > 0.0 { v + 1e5 } else { *v }).collect();
-    let mut tangent = vec![0.0; n];
-    film.residual_tangent(u, &lifted, du, &mut tangent);
-    let at = |t: f64| {
-        let mut r = vec![0.0; n];
-        film.residual(&moved(u, du, t), &lifted, &mut r);
-        r
-    };
-    let mut stencil = stribeck::math::Stencil::zeros(n);
-    film.stencil(u, &lifted, &mut stencil);
-    let e = 1e-6;
-    let (plus, minus) = (at(e), at(-e));
-    let size = tangent.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    for k in (0..n).filter(|&k| !stencil.is_decoupled(k)) {
+    let (plus, here, minus) = (plus.output.to_array(), here.output.to_array(), minus.output.to_array());
+    for (k, tangent) in tangent.output.to_array().into_iter().enumerate() {
         let difference = (plus[k] - minus[k]) / (2.0 * e);
-        assert!((difference - tangent[k]).abs() < 1e-6 * size, "row {k}: {difference} {}", tangent[k]);
+        let size = tangent.abs() + here[k].abs();
+        assert!(
+            (difference - tangent).abs() <= 1e-6 * size,
+            "{}: output {k}: {difference} {tangent} of {}",
+            case.name,
+            here[k]
+        );
     }
-    let lambda: Vec<f64> = noise.iter().cycle().take(n).copied().collect();
-    let forward: f64 = lambda.iter().zip(&tangent).map(|(l, t)| l * t).sum();
-    let backward = inner(&film.residual_cotangent(u, &lifted, &lambda), du);
-    assert!((forward - backward).abs() < 1e-11 * size * n as f64);
 }
 
-fn check_outputs(film: &dyn FilmModel, u: &FilmInput, q: &[f64], du: &FilmInput, dq: &[f64]) {
-    let tangent = numbers(&film.output_tangent(u, q, dq, du));
-    let at = |t: f64| {
-        let moved_q: Vec<f64> = q.iter().zip(dq).map(|(q, d)| q + t * d).collect();
-        numbers(&film.output(&moved(u, du, t), &moved_q))
+fn check_transpose(case: &Case, at: &Point, along: &Point, angle: f64, tangent: &FilmTangent, noise: &[f64]) {
+    let n = at.q.len();
+    let weights = |turn: usize, size: f64| -> Vec<f64> {
+        (0..n).map(|k| noise[(2 * k + turn) % noise.len()] / size).collect()
     };
-    let e = 1e-6;
-    let (plus, minus, here) = (at(e), at(-e), at(0.0));
-    let weights = [0.3, -1.2, 0.7, 0.4, 1e6, 1e-4, 1e5];
-    let mut forward = 0.0;
-    for k in 0..7 {
-        let difference = (plus[k] - minus[k]) / (2.0 * e);
-        let size = tangent[k].abs() + here[k].abs();
-        assert!((difference - tangent[k]).abs() < 1e-5 * size, "output {k}: {difference} {}", tangent[k]);
-        forward += weights[k] * tangent[k];
-    }
-    let w = FilmOutput {
-        force_n: [weights[0], weights[1]],
-        loss_w: weights[2],
-        dissipation_w: weights[3],
-        gap_min_m: weights[4],
-        pressure_peak_pa: weights[5],
-        side_flow_m3_s: weights[6],
-    };
-    let mut q_bar = vec![0.0; q.len()];
-    let u_bar = film.output_cotangent(u, q, &w, &mut q_bar);
-    let backward = inner(&u_bar, du) + q_bar.iter().zip(dq).map(|(a, b)| a * b).sum::<f64>();
-    let size: f64 = weights.iter().zip(&tangent).map(|(w, t)| (w * t).abs()).sum();
-    assert!((forward - backward).abs() < 1e-10 * size, "{forward} {backward}");
+    let (on_r, on_c) = (weights(5, largest(&tangent.residual)), weights(9, largest(&tangent.content)));
+    let dy = tangent.output.to_array();
+    let on_y = std::array::from_fn(|k| if dy[k] == 0.0 { 1.0 } else { noise[k] / dy[k] });
+    let output = FilmOutput::from_array(on_y);
+    let w = FilmWeights { residual: &on_r, content: &on_c, output };
+    let bar = case.film.cotangent(&at.site(angle), &at.q, &at.rate, &w);
+    let forward = [dot(&on_r, &tangent.residual), dot(&on_c, &tangent.content), dot(&on_y, &dy)];
+    let backward = [
+        dot(&bar.q, &along.q),
+        dot(&bar.rate, &along.rate),
+        bar.input.dot(&along.input),
+        dot(&bar.gap_m, &along.shape_m),
+    ];
+    let size = dot_abs(&bar.q, &along.q)
+        + dot_abs(&bar.rate, &along.rate)
+        + dot_abs(&bar.input.to_array(), &along.input.to_array())
+        + dot_abs(&bar.gap_m, &along.shape_m);
+    let (forward, backward): (f64, f64) = (forward.iter().sum(), backward.iter().sum());
+    assert!((forward - backward).abs() <= 1e-11 * size, "{}: {forward} {backward} of {size}", case.name);
+}
 
-    let df = film.force_tangent(u, q, du);
-    let by_pressure = film.output_tangent(u, q, dq, &FilmInput::default());
-    for a in 0..2 {
-        assert!((df[a] + by_pressure.force_n[a] - tangent[a]).abs() < 1e-9 * tangent[a].abs().max(1.0));
+/// What Newton's method sees: residual, stencil, columns, rows, corner at the rate `alpha c + past`.
+fn check_linearised(case: &Case, at: &Point, along: &Point, angle: f64, alpha: f64) {
+    let (film, n, (_, b)) = (case.film.as_ref(), at.q.len(), case.film.shape());
+    let motions = if film.mesh().is_some_and(|m| m.axial == Axial::Full) { 4 } else { 2 };
+    let mut linear = FilmLinear::new(n, motions);
+    let site = at.site(angle);
+    film.linearise(&site, &at.q, alpha, &at.rate, &mut linear);
+    let here = values(film, at, angle);
+    let rate: Vec<f64> = here.content.iter().zip(&at.rate).map(|(c, past)| alpha * c + past).collect();
+    let mut residual = vec![0.0; n];
+    film.residual(&site, &at.q, &rate, &mut residual);
+    let near = |a: &[f64], b: &[f64], what: &str| {
+        let size = largest(b);
+        for k in 0..b.len() {
+            assert!((a[k] - b[k]).abs() <= 1e-11 * size, "{}: {what} {k}: {} {}", case.name, a[k], b[k]);
+        }
+    };
+    near(&linear.content, &here.content, "content");
+    near(&linear.residual, &residual, "residual");
+    near(&linear.loads[..motions], &here.output.loads()[..motions], "load");
+
+    let u = &along.input;
+    let [ex, ey] = u.eccentricity_m;
+    let motion = [ex, ey, u.tilt_rad[0], u.tilt_rad[1]];
+    let mut moves =
+        FilmInput { eccentricity_m: u.eccentricity_m, tilt_rad: u.tilt_rad, ..Default::default() };
+    if n == 0 {
+        // In closed form the velocity takes the place of the content's rate.
+        moves.velocity_m_s = u.eccentricity_m.map(|e| alpha * e);
     }
-    let mut row = vec![0.0; q.len()];
-    let f_bar = film.force_cotangent(u, q, [0.3, -1.2], Some(&mut row));
-    let direct = 0.3 * tangent[0] - 1.2 * tangent[1];
-    let turned = inner(&f_bar, du) + row.iter().zip(dq).map(|(a, b)| a * b).sum::<f64>();
-    assert!((direct - turned).abs() < 1e-9 * (tangent[0].abs() + tangent[1].abs()));
+    let still = FilmChange { q: &along.q, rate: &[], input: moves, shape_m: &[] };
+    let content = film.tangent(&site, &at.q, &rate, &still).content;
+    let d_rate: Vec<f64> = content.iter().map(|c| alpha * c).collect();
+    let tangent = film.tangent(&site, &at.q, &rate, &FilmChange { rate: &d_rate, ..still });
+    let a = &linear.stencil;
+    let dq = |k: usize, by: f64| if by == 0.0 { 0.0 } else { by * along.q[k % n] };
+    let row = |k: usize| {
+        let sides = dq(k, a.diagonal[k]) + dq(k + n - b, a.west[k]) + dq(k + b, a.east[k]);
+        let across = dq(k + n - 1, a.south[k]) + dq(k + 1, a.north[k]);
+        sides + across + (0..motions).map(|m| linear.columns[m * n + k] * motion[m]).sum::<f64>()
+    };
+    near(&(0..n).map(row).collect::<Vec<_>>(), &tangent.residual, "row");
+    let load = |i: usize| {
+        let by_q = dot(&linear.rows[i * n..(i + 1) * n], &along.q);
+        by_q + (0..motions).map(|m| linear.corner[i][m] * motion[m]).sum::<f64>()
+    };
+    near(&(0..motions).map(load).collect::<Vec<_>>(), &tangent.output.loads()[..motions], "change of load");
 }

@@ -1,13 +1,13 @@
 //! The main job: from the measured indicator diagram to the optimised bearing.
 
-use crate::common::{COARSE, here, main_study, quietly};
+use crate::common::{COARSE, here, main_study, quietly, smooth_study};
 use stribeck::cranktrain::{CylinderPressure, SliderCrank};
 use stribeck::optimise::Outcome;
 use stribeck::report::{self, AtBound, Findings};
 use stribeck::study::run;
 
 fn solve(changes: &[(&str, &str)]) -> Findings {
-    let study = main_study(changes);
+    let study = smooth_study(changes);
     quietly(|context| run(&study, context))
 }
 
@@ -29,6 +29,18 @@ fn the_measured_trace_has_the_stated_mean_effective_pressure_and_peak() {
     assert!((trace.imep_pa(&crank) - 2.25e6).abs() <= 0.05e6, "{}", trace.imep_pa(&crank));
     let (peak, at) = trace.peak();
     assert!((peak - 20.8e6).abs() <= 0.15e6 && (at.to_degrees() - 6.4).abs() <= 1.0);
+}
+
+#[test]
+fn the_main_study_converges_within_its_limits() {
+    let end = quietly(|context| run(&main_study(&[]), context)).report;
+    assert_eq!(end.outcome.status, Outcome::Converged, "{:?}", end.history);
+    assert!(end.kkt.residual.unwrap() < 1e-6 && end.constraints.iter().all(|c| c.met));
+    let (start, optimum) = (end.objective.start.unwrap(), end.objective.optimum.unwrap());
+    assert!(optimum.total_w < start.total_w);
+    let orbit = &end.orbit[0];
+    assert!(orbit.film_temperature_c > 60.0, "the heat balance warms the film: {}", orbit.film_temperature_c);
+    assert!(end.gradient.unwrap().rows.iter().all(|r| r.verdict.starts_with("exact")));
 }
 
 #[test]
