@@ -18,14 +18,15 @@
 //! | 5 | [`gradient`] | derivatives of cycle quantities by five engines: FW, BW, CEN, TRA, ADJ |
 //! | 4 | [`orbit`] | the settled periodic cycle of a [`dae`] and quantities of it |
 //! | 3 | [`cranktrain`] | cylinder pressure, slider-crank, loads; one bearing as a periodic system |
-//! | 2 | [`film`] | the lubricated gap: Reynolds' equation, short bearing |
-//! | 1 | [`laws`], [`dae`] | pointwise physics; the ladder of abilities of a periodic implicit system |
+//! | 2 | [`film`] | the lubricated gap: Reynolds' equation with cavity, rough surfaces, supply and shapes; short bearing |
+//! | 1 | [`laws`], [`dae`] | pointwise physics: oils, rough surfaces, contact; the ladder of abilities of a periodic implicit system with memory and cycle unknowns |
 //! | ground | [`math`], [`units`], [`run`] | algebra; quantities as text; cancel, progress, counted work |
 //!
 //! # The way of the data
 //!
 //! ```text
 //! study.toml --units, checks--> Study --> DesignProblem (one JournalBearing per bearing and operating point)
+//!     (or, for a study that tabulates: equilibrium after equilibrium --> Characteristic)
 //!     --> SQP: design --> settled orbit --> values;  accepted design --> gradient engine --> slopes --> QP --> step
 //!     --> Report (JSON, HTML, CSV)
 //! ```

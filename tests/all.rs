@@ -1,5 +1,6 @@
 //! One test program for all integration tests, so that the crate is linked once. Run it in release: `cargo test --release`.
 
+mod allocations;
 mod architecture;
 mod bad_studies;
 mod cli;
@@ -10,3 +11,6 @@ mod literature;
 mod main_job;
 mod orbits;
 mod study_physics;
+
+#[global_allocator]
+static ALLOCATOR: allocations::Counting = allocations::Counting;

@@ -259,3 +259,80 @@ fn the_report_names_the_laws_and_shows_contact_and_temperature() {
     assert!((exact.exact_value.unwrap() - orbit.min_film_thickness_um.value).abs() < 1e-12);
     assert!(exact.value.unwrap() < exact.exact_value.unwrap(), "the smooth minimum is on the safe side");
 }
+
+const SMALL_SHAFT: &str = r#"
+format = "stribeck-study/1"
+title = "A shaft"
+[bearings.one]
+kind = "constant"
+count = 2
+force = "2 kN"
+width = "25 mm"
+diameter = "50 mm"
+diametral_clearance = "60 um"
+[bearings.one.supply]
+pressure = "1 bar"
+[[bearings.one.supply.openings]]
+kind = "axial-groove"
+angle = "180 deg"
+extent = "20 deg"
+length_share = 0.8
+[oil]
+grade = "ISO VG 46"
+inlet_temperature = "50 degC"
+[film]
+cells_around = 36
+cells_across_half = 4
+[orbit]
+steps_per_cycle = 72
+scheme = "bdf1"
+periodicity_tolerance = 1e-9
+[characteristic]
+vary = "speed"
+speeds = ["1000 rpm", "500 rpm"]
+reference.columns = ["speed_rpm", "torque_nm"]
+reference.rows = [[1000, 1.0]]
+"#;
+
+#[test]
+fn a_characteristic_over_the_speed_adds_the_torques_of_its_bearings() {
+    let study = Study::read(SMALL_SHAFT, Format::Toml, None).unwrap_or_else(|e| panic!("{:#?}", e.faults));
+    let found = quietly(|run| stribeck::study::characterise(&study, run)).unwrap();
+    assert_eq!(found.status, stribeck::report::CharacteristicStatus::Complete, "{:?}", found.failures);
+    let (shaft, one) = (&found.tables[0], &found.tables[1]);
+    for n in 0..2 {
+        let (all, each) = (shaft.columns[0].values[n].unwrap(), one.columns[0].values[n].unwrap());
+        assert!((all / (2.0 * each) - 1.0).abs() < 1e-12);
+    }
+    assert!(shaft.columns[0].values[0] > shaft.columns[0].values[1], "a full film drags more at speed");
+    assert_eq!(shaft.columns[0].reference, vec![Some(1.0), None]);
+    assert!(stribeck::report::characteristic_html(&found).unwrap().contains("friction torque"));
+}
+
+#[test]
+fn a_characteristic_refuses_what_does_not_belong_to_it() {
+    for (from, to, words) in [
+        ("[characteristic]", "[gradient]\nengine = \"ADJ\"\n[characteristic]", "tabulates a characteristic"),
+        ("vary = \"speed\"", "vary = \"eccentricity-ratio\"", "is missing"),
+        ("\"speed_rpm\"", "\"speed\"", "speed_rpm"),
+        ("speeds = [\"1000 rpm\", \"500 rpm\"]", "speeds = []", "at least one"),
+        ("kind = \"constant\"\ncount = 2\nforce = \"2 kN\"", "kind = \"position\"", "constant loads"),
+    ] {
+        assert!(SMALL_SHAFT.contains(from), "{from}");
+        let faults = Study::read(&SMALL_SHAFT.replace(from, to), Format::Toml, None).err().unwrap().faults;
+        assert!(faults.iter().any(|f| f.message.contains(words)), "{to}: {faults:?}");
+    }
+}
+
+#[test]
+fn the_steady_studies_meet_their_tables() {
+    for (name, most) in [("steady-butenschoen", [0.5, 0.15]), ("steady-raimondi-boyd", [1.5, 0.6])] {
+        let text = std::fs::read_to_string(here(&format!("studies/{name}.toml"))).unwrap();
+        let study = Study::read(&text, Format::Toml, Some(&here("studies"))).unwrap();
+        let found = quietly(|run| stribeck::study::characterise(&study, run)).unwrap();
+        for (column, most) in found.tables[0].columns.iter().zip(most) {
+            let miss = column.largest_difference.unwrap();
+            assert!(miss <= most, "{name}, {}: {miss} > {most}", column.title);
+        }
+    }
+}

@@ -136,6 +136,10 @@ pub(super) fn schema(a: &SchemaArguments) -> Result<u8, Stop> {
 
 pub(super) fn gradient(a: &GradientArguments) -> Result<u8, Stop> {
     let study = read(&a.file, a.json)?;
+    if study.points.is_empty() {
+        eprintln!("error: {}: a study that tabulates a characteristic has no gradient", a.file.display());
+        return Ok(EXIT_STUDY);
+    }
     let engines = a.engine.map_or_else(|| vec![study.engine], super::EngineChoice::engines);
     let sweep = if a.sweep { Sweep::wide() } else { Sweep(vec![study.perturbation]) };
     let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(0));

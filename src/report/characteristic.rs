@@ -104,8 +104,14 @@ impl CharacteristicColumn {
 
     /// Sets reference values beside the column and measures the differences.
     pub fn compare(&mut self, reference: Vec<Option<f64>>) {
-        let pairs: Vec<(f64, f64)> =
-            self.values.iter().zip(&reference).filter_map(|(v, r)| v.zip(*r)).collect();
+        // Beside a reference of zero a relative difference means nothing.
+        let pairs: Vec<(f64, f64)> = self
+            .values
+            .iter()
+            .zip(&reference)
+            .filter_map(|(v, r)| v.zip(*r))
+            .filter(|(_, r)| *r != 0.0)
+            .collect();
         let top = pairs.iter().fold(0.0f64, |a, (_, r)| a.max(r.abs()));
         let angle = self.unit == "deg";
         let miss = |(v, r): &(f64, f64)| if angle { (v - r).abs() } else { 100.0 * (v / r - 1.0).abs() };

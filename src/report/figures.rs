@@ -16,7 +16,7 @@ const MARK_WIDTH: f64 = 0.22;
 /// The same upwards.
 const MARK_HEIGHT: f64 = 0.1;
 /// Ratio of the ends of a varied quantity above which its axis is logarithmic.
-const WIDE: f64 = 20.0;
+const WIDE: f64 = 10.0;
 /// Ratio of largest to smallest value found above which the axis is logarithmic.
 const DECADES: f64 = 100.0;
 
@@ -135,8 +135,9 @@ pub fn characteristic(x: &CharacteristicColumn, columns: &[&CharacteristicColumn
         .with_y_label(columns.first().map_or_else(String::new, |c| label(c)));
     let across = x.values.iter().flatten().copied().collect::<Vec<f64>>();
     let up = columns.iter().flat_map(|c| c.values.iter().chain(&c.reference)).flatten().copied();
-    let layout = scaled_up(scaled_across(layout, &across), &up.collect::<Vec<f64>>());
-    render(plots, layout, name)
+    let (layout, up) = (scaled_across(layout, &across), up.collect::<Vec<f64>>());
+    // A sum and its parts stand on one even scale, however small a part may become.
+    render(plots, if columns.len() > 1 { even_up(layout, &up) } else { scaled_up(layout, &up) }, name)
 }
 
 /// Smallest and largest value.
@@ -170,8 +171,13 @@ fn scaled_up(layout: Layout, values: &[f64]) -> Layout {
             .with_y_axis_max(decade(high.log10().ceil()))
             .with_y_tick_format(plain());
     }
+    even_up(layout, values)
+}
+
+/// An axis of what was found that starts at zero.
+fn even_up(layout: Layout, values: &[f64]) -> Layout {
     let (end, step) = tight_axis(values.iter().copied());
-    layout.with_y_axis_min(low.min(0.0)).with_y_axis_max(end).with_y_tick_step(step)
+    layout.with_y_axis_min(range(values).0.min(0.0)).with_y_axis_max(end).with_y_tick_step(step)
 }
 
 /// One column of a characteristic: a curve, and points where there is a reference. `place` tells its place among

@@ -87,7 +87,12 @@ pub(super) fn positions(file: &StudyFile, plan: Option<&CharacteristicPlan>, fau
     let places = matches!(plan.map(|p| &p.vary), Some(Vary::Eccentricity { .. }));
     for (name, bearing) in file.bearings.value().into_iter().flatten() {
         let kind = bearing.value().and_then(|b| b.kind.value().copied());
-        if kind == Some(BearingKind::Position) && !places {
+        let over_speed = matches!(plan.map(|p| &p.vary), Some(Vary::Speed(_)));
+        if over_speed && kind.is_some_and(|k| k != BearingKind::Constant) {
+            let words =
+                "a characteristic over the speed needs constant loads: kind = \"constant\" with force";
+            faults.add(&format!("bearings.{name}.kind"), words);
+        } else if kind == Some(BearingKind::Position) && !places {
             faults.add(
                 &format!("bearings.{name}.kind"),
                 "\"position\" has no load; it goes with characteristic.vary = \"eccentricity-ratio\" only",

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 /// Keys without a default, by section.
 const REQUIRED: &[(&str, &[&str])] = &[
-    ("StudyFile", &["format", "title", "bearings", "oil", "objective", "parameters"]),
+    ("StudyFile", &["format", "title", "bearings", "oil"]),
     ("MachineFile", &["bore", "throw", "oscillating_mass", "rotating_mass"]),
     ("CylinderPressureFile", &["source"]),
     ("BearingFile", &["kind", "width", "diameter", "diametral_clearance"]),
@@ -16,6 +16,7 @@ const REQUIRED: &[(&str, &[&str])] = &[
     ("OpeningFile", &["kind"]),
     ("RoughnessFile", &["journal", "shell"]),
     ("ShapeFile", &["name", "kind"]),
+    ("CharacteristicFile", &["vary"]),
     ("ObjectiveFile", &["operating_points"]),
     ("OperatingPointFile", &["name", "speed"]),
     ("ParameterFile", &["name", "lower", "upper"]),
@@ -35,6 +36,9 @@ pub fn schema() -> Value {
             object["required"] = json!(keys);
         }
     }
+    // A study searches a design or tabulates a characteristic.
+    schema["anyOf"] =
+        json!([{ "required": ["objective", "parameters"] }, { "required": ["characteristic"] }]);
     schema["properties"]["format"]["const"] = json!(super::FORMAT);
     schema
 }
