@@ -76,54 +76,54 @@ impl<'a, M: SensitiveDae> Backward<'a, M> {
         }
     }
 
+    fn at(&self, n: usize) -> At<'a> {
+        At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &[] }
+    }
+
+    /// Weights of one quantity on the memory of a step, from those on the rates of this and the two later steps.
+    fn weigh_memory(&mut self, r: usize) {
+        let (m, a) = (self.model.memories(), self.orbit.scheme.rates(self.orbit.dt_s));
+        let [now, next, later] = &self.carried;
+        for (i, c) in self.scratch.on_memory.iter_mut().enumerate() {
+            let k = r * m + i;
+            *c = a[0] * now[k] + a[1] * next[k] + a[2] * later[k];
+        }
+    }
+
     /// Right-hand side of one quantity; starts the weights on the rate of this step.
     fn force(&mut self, n: usize, r: usize, forced: bool) {
-        let (model, a) = (self.model, self.orbit.scheme.rates(self.orbit.dt_s));
-        let (size, m) = (model.states(), model.memories());
-        let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rates[n] };
-        let [now, next, later] = &mut self.carried;
-        let column = r * m..(r + 1) * m;
-        let now = &mut now[column.clone()];
-        now.fill(0.0);
+        let (model, size, m) = (self.model, self.model.states(), self.model.memories());
+        self.carried[0][r * m..(r + 1) * m].fill(0.0);
         self.scratch.z.fill(0.0);
         let w = if forced { self.weights[r][n] } else { 0.0 };
         if w != 0.0 {
             let mut weights = vec![0.0; model.outputs()];
             weights[self.of[r].output] = w;
-            let out = Cotangent { z: &mut self.scratch.z, rate: now, p: &mut self.rows[r] };
+            let rate = &mut self.carried[0][r * m..(r + 1) * m];
+            let out = Cotangent { z: &mut self.scratch.z, rate, p: &mut self.rows[r] };
+            let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rates[n] };
             model.output_cotangent(&self.point, at, &weights, out);
         }
-        let on_memory = &mut self.scratch.on_memory;
-        for ((c, now), (next, later)) in
-            on_memory.iter_mut().zip(&*now).zip(next[column.clone()].iter().zip(&later[column]))
-        {
-            *c = a[0] * now + a[1] * next + a[2] * later;
-        }
+        self.weigh_memory(r);
         self.scratch.p.fill(0.0);
-        model.memory_cotangent(&self.point, at, on_memory, &mut self.scratch.z, &mut self.scratch.p);
+        let (at, Scratch { on_memory, z, p }) = (self.at(n), &mut self.scratch);
+        model.memory_cotangent(&self.point, at, on_memory, z, p);
         let lambda = &mut self.lambda[r * size..(r + 1) * size];
-        lambda.iter_mut().zip(&self.scratch.z).for_each(|(l, z)| *l = -z);
+        lambda.iter_mut().zip(&*z).for_each(|(l, z)| *l = -z);
     }
 
     /// Adds the products with the new adjoint state, completes the weights on the rate and measures them.
     fn hand_on(&mut self, n: usize, r: usize) -> f64 {
-        let (model, a) = (self.model, self.orbit.scheme.rates(self.orbit.dt_s));
-        let (size, m) = (model.states(), model.memories());
+        let (model, size, m) = (self.model, self.model.states(), self.model.memories());
         let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rates[n] };
-        let column = r * m..(r + 1) * m;
         let lambda = &self.lambda[r * size..(r + 1) * size];
-        let [now, next, later] = &mut self.carried;
-        let now = &mut now[column.clone()];
+        let now = &mut self.carried[0][r * m..(r + 1) * m];
         model.transposed_times(&self.point, at, lambda, now, &mut self.rows[r]);
-        let on_memory = &mut self.scratch.on_memory;
-        for ((c, now), (next, later)) in
-            on_memory.iter_mut().zip(&*now).zip(next[column.clone()].iter().zip(&later[column]))
-        {
-            *c = a[0] * now + a[1] * next + a[2] * later;
-        }
-        self.scratch.z.fill(0.0);
-        model.memory_cotangent(&self.point, at, on_memory, &mut self.scratch.z, &mut self.rows[r]);
         let size = now.iter().fold(0.0f64, |a, c| a.max(c.abs()));
+        self.weigh_memory(r);
+        let (at, Scratch { on_memory, z, .. }) = (self.at(n), &mut self.scratch);
+        z.fill(0.0);
+        model.memory_cotangent(&self.point, at, on_memory, z, &mut self.rows[r]);
         self.scale[r] = self.scale[r].max(size);
         if self.scale[r] > 0.0 { size / self.scale[r] } else { 0.0 }
     }
