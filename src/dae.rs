@@ -32,6 +32,11 @@ pub trait Dae: Send + Sync {
     fn memories(&self) -> usize;
     /// The parameters `p` at which this model stands, SI units; cycle unknowns come last.
     fn parameters(&self) -> &[f64];
+    /// Size of a change of a parameter that counts as order one: its own size, unless it is zero.
+    fn parameter_scale(&self, j: usize) -> f64 {
+        let size = self.parameters()[j].abs();
+        if size > 0.0 { size } else { 1.0 }
+    }
     /// Length of the period in seconds.
     fn period_s(&self) -> f64;
     /// Number of outputs.

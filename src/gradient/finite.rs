@@ -27,7 +27,7 @@ pub enum Difference {
     Central,
 }
 
-/// Finite differences with step `h = eps_p |p|` (or `eps_p` where `p` is zero).
+/// Finite differences with step `h = eps_p |p|` (where `p` is zero, `eps_p` times the scale the model gives it).
 #[derive(Debug, Clone, Copy)]
 pub struct FiniteDifference {
     /// Points used.
@@ -71,7 +71,7 @@ impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
         }
         let here: Vec<f64> = of.iter().map(|q| at.value(q)).collect();
         for j in 0..varied {
-            let step = self.perturbation * if p[j] != 0.0 { p[j].abs() } else { 1.0 };
+            let step = self.perturbation * model.parameter_scale(j);
             let mut settled = |sign: f64| -> Result<Vec<f64>, GradientError> {
                 let mut shifted = p.to_vec();
                 shifted[j] += sign * step;

@@ -26,7 +26,7 @@ pub struct TaylorRow {
     pub order: Option<f64>,
 }
 
-/// Taylor table of each quantity for step lengths `first, first / 2, ...` along `d_j = p_j direction_j`.
+/// Taylor table of each quantity for step lengths `first, first / 2, ...` along `d_j = scale_j direction_j` (the parameter's own size, unless it is zero).
 #[allow(clippy::too_many_arguments)] // A proof names everything it rests on.
 pub fn taylor_table<M: SensitiveDae>(
     model: &M,
@@ -42,7 +42,7 @@ pub fn taylor_table<M: SensitiveDae>(
     let smallest = first / (1u64 << count.max(1)) as f64;
     let options = &tight(options, smallest);
     let base = settle(model, options, Some(at), cancel)?;
-    let d: Vec<f64> = p.iter().zip(direction).map(|(p, d)| p * d).collect();
+    let d: Vec<f64> = direction.iter().enumerate().map(|(j, d)| model.parameter_scale(j) * d).collect();
     let mut tables: Vec<Vec<TaylorRow>> = vec![Vec::new(); of.len()];
     for k in 0..count {
         let step = first / (1u64 << k) as f64;

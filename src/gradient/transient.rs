@@ -107,7 +107,7 @@ impl<'a, M: SensitiveDae> Forward<'a, M> {
         for ((row, quantity), weights) in self.rows.iter_mut().zip(self.of).zip(&self.weights) {
             row[j] += weights[n] * dy[quantity.output];
         }
-        model.parameters()[j].abs() * model.memory_change(new)
+        model.parameter_scale(j) * model.memory_change(new)
     }
 }
 

@@ -1,12 +1,14 @@
 //! The bearing evaluated and linearised.
 
 use super::rescue::rescue;
-use super::{BearingOutput, JournalBearing, Tilt};
+use super::{BearingOutput, BearingParameter, JournalBearing, Tilt};
 use crate::cranktrain::Drive;
 use crate::dae::{At, CycleEquations, Dae, InvalidParameters, LinearisedDae, Step};
 use crate::film::{FilmLinear, FilmOutput, up_to_the_switch};
 use crate::math::{Bordered, Singular};
 
+/// Size of a pressure that is zero, Pa.
+const ONE_BAR_PA: f64 = 1e5;
 /// Share of the smallest gap that one Newton step must leave.
 const KEEP_GAP: f64 = 0.2;
 
@@ -101,6 +103,17 @@ impl Dae for JournalBearing {
 
     fn parameters(&self) -> &[f64] {
         &self.p
+    }
+
+    fn parameter_scale(&self, j: usize) -> f64 {
+        let (size, clearance) = (self.p[j].abs(), self.setup.diametral_clearance_m / 2.0);
+        match self.setup.parameters[j] {
+            _ if size > 0.0 => size,
+            BearingParameter::Shape(..) => clearance,
+            BearingParameter::Tilt(_) => 2.0 * clearance / self.setup.width_m,
+            BearingParameter::SupplyPressure => ONE_BAR_PA,
+            _ => 1.0,
+        }
     }
 
     fn period_s(&self) -> f64 {
