@@ -23,12 +23,12 @@ const MULTIPLE: f64 = 10.0;
 
 pub(super) fn settle_balanced<M: LinearisedDae>(
     model: &M,
+    equations: &dyn CycleEquations,
     options: &OrbitOptions,
     start: Option<&Orbit>,
     cancel: &Cancel,
 ) -> Result<Orbit, OrbitError> {
     let mut p = model.parameters().to_vec();
-    let Some(equations) = model.cycle() else { return settle_fixed(model, options, start, cancel) };
     let (k, wanted) = (equations.unknowns(), MULTIPLE * options.periodicity_tolerance);
     let first = p.len() - k;
     if let Some(known) = start.filter(|o| o.parameters.len() == p.len()) {

@@ -139,10 +139,10 @@ pub fn settle<M: LinearisedDae>(
     start: Option<&Orbit>,
     cancel: &Cancel,
 ) -> Result<Orbit, OrbitError> {
-    if model.cycle().is_some() {
-        return settle_balanced(model, options, start, cancel);
+    match model.cycle() {
+        Some(equations) => settle_balanced(model, equations, options, start, cancel),
+        None => settle_fixed(model, options, start, cancel),
     }
-    settle_fixed(model, options, start, cancel)
 }
 
 /// The settled cycle at given cycle unknowns.

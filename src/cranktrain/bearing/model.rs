@@ -1,7 +1,7 @@
 //! The bearing evaluated and linearised.
 
 use super::rescue::rescue;
-use super::{BearingOutput, BearingParameter, JournalBearing, Tilt};
+use super::{BearingOutput, BearingParameter, JournalBearing};
 use crate::cranktrain::Drive;
 use crate::dae::{At, CycleEquations, Dae, InvalidParameters, LinearisedDae, Step};
 use crate::film::{FilmLinear, FilmOutput, up_to_the_switch};
@@ -306,10 +306,5 @@ impl JournalBearing {
         let mut room = Vec::new();
         let site = self.site(0.0, self.input(0.0, z, [0.0; 2]), &mut room);
         self.setup.film.admissible(&site, motion, keep)
-    }
-
-    /// Whether the tilt is an unknown.
-    pub fn tilts_freely(&self) -> bool {
-        self.setup.tilt == Tilt::Free
     }
 }
