@@ -79,22 +79,34 @@ pub trait CycleEquations: Send + Sync {
     fn scale(&self) -> Vec<f64>;
 }
 
-/// A system whose steps can be solved by Newton's method.
+/// A system whose steps can be solved by Newton's method, and whose factorised steps carry changes of the memory on.
 pub trait LinearisedDae: Dae {
-    /// Factors of `F_z + alpha F_m' M_z`, with their workspace.
-    type Factors: Send;
+    /// Factors of `F_z + alpha F_m' M_z` with `F_m'` and `M_z`: all that a step needs to carry changes on, and no more,
+    /// because a whole cycle of them may be kept.
+    type Factors: Send + Sync;
+    /// Workspace of a linearisation.
+    type Room: Send;
     /// Room for factors.
     fn factors(&self) -> Self::Factors;
+    /// Size of one step's factors.
+    fn factor_bytes(&self) -> usize;
+    /// A workspace.
+    fn room(&self) -> Self::Room;
     /// Writes memory and residual at the rate `alpha M(t, z) + past` and factorises `F_z + alpha F_m' M_z` there.
     fn linearise(
         &self,
         step: Step,
         memory: &mut [f64],
         residual: &mut [f64],
+        room: &mut Self::Room,
         into: &mut Self::Factors,
     ) -> Result<(), Singular>;
     /// Replaces each column of `rhs` by the solution with the factorised matrix.
-    fn solve(&self, factors: &mut Self::Factors, rhs: &mut [f64]);
+    fn solve(&self, factors: &Self::Factors, rhs: &mut [f64]);
+    /// `out += F_m' rate`.
+    fn rate_times(&self, factors: &Self::Factors, rate: &[f64], out: &mut [f64]);
+    /// `dm += M_z dz`.
+    fn memory_times(&self, factors: &Self::Factors, dz: &[f64], dm: &mut [f64]);
     /// Continues the last step: changes the state `z` (the last one) towards a guess of the next, given the one before
     /// it. By default the last state is the guess.
     fn predict(&self, _before: &[f64], _z: &mut [f64]) {}
@@ -104,9 +116,13 @@ pub trait LinearisedDae: Dae {
         false
     }
     /// Whether the model is defined at a state.
-    fn contains(&self, z: &[f64]) -> bool;
+    fn contains(&self, _z: &[f64]) -> bool {
+        true
+    }
     /// Largest fraction of the Newton step `dz` that stays where the model is defined, at most 1.
-    fn admissible(&self, z: &[f64], dz: &[f64]) -> f64;
+    fn admissible(&self, _z: &[f64], _dz: &[f64]) -> f64 {
+        1.0
+    }
     /// Adds a share of a Newton step to the state. A piecewise smooth model may stop parts of it where their piece ends.
     fn advance(&self, z: &mut [f64], dz: &[f64], share: f64) {
         z.iter_mut().zip(dz).for_each(|(z, d)| *z += share * d);
@@ -114,28 +130,50 @@ pub trait LinearisedDae: Dae {
 }
 
 /// A system that can be differentiated by states, rates and parameters, in both directions.
+///
+/// The parameters act at every instant through the same **fields** `u(p)`: scalars such as a clearance, the shape of a gap
+/// on every cell. Derivatives by the fields are gathered along a trajectory and brought to the parameters once, so that
+/// neither the number of parameters nor their meaning costs anything per step. By default the fields are the parameters.
 pub trait SensitiveDae: LinearisedDae {
     /// What the derivatives at one point of a trajectory rest on, so that many of them share its evaluation; `()` will do.
-    type Point: Send;
+    type Point: Send + Sync;
     /// Room for a point.
     fn point(&self) -> Self::Point;
     /// Evaluates a point.
     fn fix(&self, at: At, into: &mut Self::Point);
     /// Factorises `F_z + alpha F_m' M_z` at a point of a trajectory.
-    fn factor(&self, at: At, alpha: f64, into: &mut Self::Factors) -> Result<(), Singular>;
+    fn factor(
+        &self,
+        at: At,
+        alpha: f64,
+        room: &mut Self::Room,
+        into: &mut Self::Factors,
+    ) -> Result<(), Singular>;
     /// Replaces each column of `rhs` by the solution with the transposed matrix.
-    fn solve_transposed(&self, factors: &mut Self::Factors, rhs: &mut [f64]);
-    /// `out += F_m' rate + F_p dp`.
-    fn times(&self, point: &Self::Point, at: At, rate: &[f64], dp: &[f64], out: &mut [f64]);
-    /// `rate += F_m'^T v` and `p += F_p^T v`.
-    fn transposed_times(&self, point: &Self::Point, at: At, v: &[f64], rate: &mut [f64], p: &mut [f64]);
-    /// Writes `dm = M_z dz + M_p dp`.
-    fn memory_tangent(&self, point: &Self::Point, at: At, dz: &[f64], dp: &[f64], dm: &mut [f64]);
-    /// Adds `M_z^T w` to `z_bar` and `M_p^T w` to `p_bar`.
-    fn memory_cotangent(&self, point: &Self::Point, at: At, w: &[f64], z_bar: &mut [f64], p_bar: &mut [f64]);
-    /// Writes `dy = g_z dz + g_m' drate + g_p dp`.
+    fn solve_transposed(&self, factors: &Self::Factors, rhs: &mut [f64]);
+    /// `rate += F_m'^T v`.
+    fn rate_cotangent(&self, factors: &Self::Factors, v: &[f64], rate: &mut [f64]);
+    /// `z += M_z^T w`.
+    fn memory_cotangent(&self, factors: &Self::Factors, w: &[f64], z: &mut [f64]);
+    /// Number of fields.
+    fn fields(&self) -> usize {
+        self.parameters().len()
+    }
+    /// `du = u_p dp`.
+    fn field_tangent(&self, dp: &[f64], du: &mut [f64]) {
+        du.copy_from_slice(dp);
+    }
+    /// `p += u_p^T u`.
+    fn field_cotangent(&self, u: &[f64], p: &mut [f64]) {
+        p.iter_mut().zip(u).for_each(|(p, u)| *p += u);
+    }
+    /// Writes `F_u du` and `M_u du`.
+    fn push(&self, point: &Self::Point, at: At, du: &[f64], residual: &mut [f64], memory: &mut [f64]);
+    /// `u += F_u^T v + M_u^T w`.
+    fn pull(&self, point: &Self::Point, at: At, v: &[f64], w: &[f64], u: &mut [f64]);
+    /// Writes `dy = g_z dz + g_m' drate + g_u du`.
     fn output_tangent(&self, point: &Self::Point, at: At, direction: Direction, dy: &mut [f64]);
-    /// Adds `g_z^T w`, `g_m'^T w` and `g_p^T w` to the three parts of `out`.
+    /// Adds `g_z^T w`, `g_m'^T w` and `g_u^T w` to the three parts of `out`.
     fn output_cotangent(&self, point: &Self::Point, at: At, w: &[f64], out: Cotangent);
 }
 
@@ -163,15 +201,15 @@ pub struct Step<'a> {
     pub past: &'a [f64],
 }
 
-/// A direction in states, rates and parameters.
+/// A direction in states, rates and fields.
 #[derive(Debug, Clone, Copy)]
 pub struct Direction<'a> {
     /// Change of the state.
     pub z: &'a [f64],
     /// Change of the rate of the memory.
     pub rate: &'a [f64],
-    /// Change of the parameters.
-    pub p: &'a [f64],
+    /// Change of the fields.
+    pub u: &'a [f64],
 }
 
 /// Where the transposed derivatives of outputs are added up.
@@ -181,6 +219,6 @@ pub struct Cotangent<'a> {
     pub z: &'a mut [f64],
     /// By rates of the memory.
     pub rate: &'a mut [f64],
-    /// By parameters.
-    pub p: &'a mut [f64],
+    /// By fields.
+    pub u: &'a mut [f64],
 }

@@ -60,12 +60,12 @@ fn a_newton_iteration_of_the_main_study_allocates_nothing() {
         let model = &plan.problem.cases()[0].model;
         let (z, past) = (model.cold_start(), vec![0.0; model.memories()]);
         let (mut memory, mut residual) = (vec![0.0; model.memories()], vec![0.0; model.states()]);
-        let mut factors = model.factors();
+        let (mut room, mut factors) = (model.room(), model.factors());
         let mut iteration = || {
             let step = Step { t_s: 1e-3, z: &z, alpha: 1e3, past: &past };
-            model.linearise(step, &mut memory, &mut residual, &mut factors).unwrap();
-            model.solve(&mut factors, &mut residual);
-            model.solve_transposed(&mut factors, &mut residual);
+            model.linearise(step, &mut memory, &mut residual, &mut room, &mut factors).unwrap();
+            model.solve(&factors, &mut residual);
+            model.solve_transposed(&factors, &mut residual);
         };
         iteration();
         assert_eq!(allocations(iteration), 0, "in an iteration of {MAIN}");

@@ -43,7 +43,7 @@ fn model(film: Arc<dyn FilmModel>, load: BearingLoad, journal_mass_kg: f64) -> J
 }
 
 fn options(steps: usize, scheme: Scheme) -> OrbitOptions {
-    OrbitOptions { steps, scheme, periodicity_tolerance: 1e-13, max_cycles: 200 }
+    OrbitOptions { steps, scheme, periodicity_tolerance: 1e-13, max_cycles: 200, memory_bytes: 1 << 30 }
 }
 
 fn solve(model: &JournalBearing, steps: usize, scheme: Scheme) -> Orbit {

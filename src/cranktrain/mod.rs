@@ -16,8 +16,8 @@ mod vee;
 mod working_cycle;
 
 pub use bearing::{
-    BearingFactors, BearingOutput, BearingParameter, BearingPoint, BearingSetup, BearingShape, HeatBalance,
-    JournalBearing, Tilt,
+    BearingFactors, BearingOutput, BearingParameter, BearingPoint, BearingRoom, BearingSetup, BearingShape,
+    GapSensitivity, HeatBalance, JournalBearing, Tilt,
 };
 pub use load::{BearingLoad, Drive, LoadTable};
 pub use pressure::CylinderPressure;

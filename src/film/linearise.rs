@@ -12,6 +12,19 @@ use super::reynolds::{Cover, Reynolds};
 use super::{Axial, FilmSite};
 use crate::math::Stencil;
 
+/// What carries changes of the content from step to step.
+#[derive(Debug, Clone, Default)]
+pub struct FilmCarry {
+    /// Derivative of each content by its unknown.
+    pub content_by_unknown: Vec<f64>,
+    /// Derivatives of the contents by the motions, one column each.
+    pub content_by_motion: Vec<f64>,
+    /// Derivative of each residual by the rate of its content, m2.
+    pub by_rate: Vec<f64>,
+    /// Derivatives of the two forces by the journal's velocity (a film in closed form squeezes without contents).
+    pub damping: [[f64; 2]; 2],
+}
+
 /// Result and workspace of a linearisation.
 #[derive(Debug, Clone)]
 pub struct FilmLinear {
@@ -31,11 +44,30 @@ pub struct FilmLinear {
     pub loads: [f64; 4],
     /// Derivatives of the loads by the motions.
     pub corner: [[f64; 4]; 4],
+    /// How contents change and what their rates do.
+    pub carry: FilmCarry,
     gap: Vec<f64>,
     rate: Vec<f64>,
     cells: Vec<Cell<2>>,
     cover: Cover,
     covered: bool,
+}
+
+impl FilmCarry {
+    /// Room for a film of `n` unknowns and a number of motions.
+    pub fn new(n: usize, motions: usize) -> Self {
+        Self {
+            content_by_unknown: vec![0.0; n],
+            content_by_motion: vec![0.0; n * motions],
+            by_rate: vec![0.0; n],
+            damping: [[0.0; 2]; 2],
+        }
+    }
+
+    /// Its size.
+    pub fn bytes(n: usize, motions: usize) -> usize {
+        (n * (2 + motions) + 4) * size_of::<f64>()
+    }
 }
 
 impl FilmLinear {
@@ -51,6 +83,7 @@ impl FilmLinear {
             rows: vec![0.0; n * motions],
             loads: [0.0; 4],
             corner: [[0.0; 4]; 4],
+            carry: FilmCarry::new(n, motions),
             gap: Vec::with_capacity(n),
             rate: vec![0.0; n],
             cells: Vec::with_capacity(n),
@@ -103,18 +136,22 @@ impl Assembly<'_> {
         Modes::at(mesh, &self.site.input, k / n_z).of(mesh.zetas[k % n_z])
     }
 
-    /// Share of the content's rate.
+    /// Contents and the share of their rates.
     fn storage(&mut self, alpha: f64) {
-        let scale = alpha * self.s.dx * self.s.dz;
+        let area = self.s.dx * self.s.dz;
         let n = self.q.len();
         for k in 0..n {
             let (split, content) = (self.film.cavitation.split(self.q[k]), self.into.cells[k].content);
-            self.into.stencil.diagonal[k] =
-                scale * (split.fill_slope * content.v + split.fill * content.d[1] * split.p_slope);
-            let by_gap = scale * split.fill * content.d[0];
+            let carry = &mut self.into.carry;
+            carry.by_rate[k] = area * (1.0 - self.into.cover.share[k]);
+            let by_unknown = split.fill_slope * content.v + split.fill * content.d[1] * split.p_slope;
+            carry.content_by_unknown[k] = by_unknown;
+            self.into.stencil.diagonal[k] = alpha * area * by_unknown;
             let modes = self.modes(k);
             for (a, mode) in modes.iter().enumerate().take(self.into.motions) {
-                self.into.columns[a * n + k] = by_gap * mode;
+                let by_motion = split.fill * content.d[0] * mode;
+                self.into.carry.content_by_motion[a * n + k] = by_motion;
+                self.into.columns[a * n + k] = alpha * area * by_motion;
             }
         }
     }

@@ -43,7 +43,7 @@ mod tangent;
 pub use cavitation::{Cavitation, CavityShear, up_to_the_switch};
 pub use gap::Gap;
 pub use input::{FilmInput, FilmOutput, INPUTS, OUTPUTS};
-pub use linearise::FilmLinear;
+pub use linearise::{FilmCarry, FilmLinear};
 pub use mesh::{Axial, Mesh};
 pub use reynolds::{MassBalance, Oil, Reynolds, Roughness};
 pub use shape::{Profile, SPLIT_HALF_WIDTH, SampledProfile, ShapeError, SurfaceTable, TensorSpline};

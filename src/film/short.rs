@@ -306,6 +306,9 @@ impl FilmModel for ShortFilm {
             };
             let df = impedance.force_change(&site.input, &du);
             (0..2).for_each(|a| into.corner[a][b] = df[a]);
+            let squeeze = FilmInput { velocity_m_s: unit, ..Default::default() };
+            let df = impedance.force_change(&site.input, &squeeze);
+            (0..2).for_each(|a| into.carry.damping[a][b] = df[a]);
         }
     }
 

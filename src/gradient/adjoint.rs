@@ -5,18 +5,21 @@
 //!
 //! ```text
 //! (F_z + a_0/dt F_m' M_z)^T l_n = -w_n (g_z + a_0/dt M_z^T g_m') - M_z^T (a_1 c_{n+1} + a_2 c_{n+2}) / dt,    indices modulo N
-//! dQ/dp = sum_n (w_n g_p + F_p^T l_n + M_p^T (a_0 c_n + a_1 c_{n+1} + a_2 c_{n+2}) / dt)
+//! dQ/du = sum_n (w_n g_u + F_u^T l_n + M_u^T (a_0 c_n + a_1 c_{n+1} + a_2 c_{n+2}) / dt),       dQ/dp = u_p^T dQ/du
 //! ```
 //!
 //! backwards in `n`, with one transposed solve per quantity and step and no work per parameter but the final product.
-//! The first sweep starts without weights behind the end of the cycle; as everything is linear, further sweeps carry only
-//! the weights left at its beginning, until they have faded. That closes the period exactly. Unlike a one-cycle adjoint
-//! on a frozen start state, this sees the start state move with the design.
+//! The first sweep starts without weights behind the end of the cycle. The weights it leaves at the beginning are carried
+//! on to their fixed point (GMRES over sweeps that only solve), and a last sweep adds the share of what was missing. That
+//! closes the period exactly. Unlike a one-cycle adjoint on a frozen start state, this sees the start state move with the design.
 
-use super::{Closure, GradientError, GradientTable, Sweep, sweep_until_closed};
-use crate::dae::{At, Cotangent, SensitiveDae};
-use crate::orbit::{Orbit, OrbitOptions, Quantity};
-use crate::run::{Cancel, Cost};
+use super::chain::{BLOCK, CLOSED, COLUMNS, Carrier, Chain, Way};
+use super::{GradientError, GradientTable};
+use crate::dae::{Cotangent, SensitiveDae};
+use crate::orbit::{Heads, Orbit, OrbitOptions, Quantity};
+use crate::run::Cancel;
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// Derivatives by all parameters, cycle unknowns held.
 pub(super) fn adjoint<M: SensitiveDae>(
@@ -26,125 +29,233 @@ pub(super) fn adjoint<M: SensitiveDae>(
     of: &[Quantity],
     cancel: &Cancel,
 ) -> Result<GradientTable, GradientError> {
-    sweep_until_closed(Backward::new(model, at, of), (0..at.steps()).rev(), options, cancel)
+    let mut sweep = Backward::new(Chain::new(model, at, options, cancel), of);
+    sweep.run(true)?;
+    let mut packed = vec![0.0; 2 * model.memories() * of.len()];
+    sweep.back.heads.pack(&mut packed);
+    let group = |start: usize| CarryBack::new(model, sweep.chain.weights(), COLUMNS.min(of.len() - start));
+    let mut carriers: Vec<CarryBack<M>> = (0..of.len()).step_by(COLUMNS).map(group).collect();
+    let closure = sweep.chain.close(Way::Backward, &mut carriers, &mut packed)?;
+    sweep.back.heads.unpack(&packed);
+    sweep.run(false)?;
+    Ok(sweep.result(closure.residual))
+}
+
+/// A backward sweep of weights on the rates, several columns side by side.
+struct CarryBack<'a, M: SensitiveDae> {
+    model: &'a M,
+    rates: [f64; 3],
+    heads: Heads,
+    /// Adjoint states, one column per quantity.
+    lambda: Vec<f64>,
+    on_memory: Vec<f64>,
+}
+
+impl<'a, M: SensitiveDae> CarryBack<'a, M> {
+    fn new(model: &'a M, rates: [f64; 3], columns: usize) -> Self {
+        let (n, m) = (model.states(), model.memories());
+        Self {
+            model,
+            rates,
+            heads: Heads::new(m, columns),
+            lambda: vec![0.0; n * columns],
+            on_memory: vec![0.0; m],
+        }
+    }
+
+    /// Weights of a column on the memory of a step, from those on the rates of this and the two later steps.
+    fn weigh_memory(&mut self, column: usize) {
+        let (m, a) = (self.heads.m, self.rates);
+        let [now, next, later] = &self.heads.at;
+        for (i, w) in self.on_memory.iter_mut().enumerate() {
+            let k = column * m + i;
+            *w = a[0] * now[k] + a[1] * next[k] + a[2] * later[k];
+        }
+    }
+
+    /// Over one step with right-hand sides and weights on its rate of its own (`forces`: by state, by rate; empty for none).
+    fn forced_step(&mut self, factors: &M::Factors, by_z: &[f64], by_rate: &[f64]) {
+        let (model, n, m) = (self.model, self.model.states(), self.heads.m);
+        self.heads.shift();
+        match by_rate.is_empty() {
+            true => self.heads.at[0].fill(0.0),
+            false => self.heads.at[0].copy_from_slice(by_rate),
+        }
+        match by_z.is_empty() {
+            true => self.lambda.fill(0.0),
+            false => self.lambda.copy_from_slice(by_z),
+        }
+        for c in 0..self.lambda.len() / n {
+            self.weigh_memory(c);
+            let z = &mut self.lambda[c * n..(c + 1) * n];
+            model.memory_cotangent(factors, &self.on_memory, z);
+            z.iter_mut().for_each(|z| *z = -*z);
+        }
+        model.solve_transposed(factors, &mut self.lambda);
+        for (lambda, now) in self.lambda.chunks_exact(n).zip(self.heads.at[0].chunks_exact_mut(m)) {
+            model.rate_cotangent(factors, lambda, now);
+        }
+    }
+}
+
+impl<M: SensitiveDae> Carrier<M> for CarryBack<'_, M> {
+    fn heads(&mut self) -> &mut Heads {
+        &mut self.heads
+    }
+
+    fn step(&mut self, factors: &M::Factors) {
+        self.forced_step(factors, &[], &[]);
+    }
+}
+
+/// What one step of a block holds.
+struct Slot<M: SensitiveDae> {
+    point: M::Point,
+    /// Derivatives of the weighted outputs, one column per quantity.
+    by_z: Vec<f64>,
+    by_rate: Vec<f64>,
+    by_u: Vec<f64>,
+    /// Adjoint states and weights on the memory, one column per quantity.
+    lambda: Vec<f64>,
+    on_memory: Vec<f64>,
 }
 
 struct Backward<'a, M: SensitiveDae> {
-    model: &'a M,
-    orbit: &'a Orbit,
+    chain: Chain<'a, M>,
     of: &'a [Quantity],
     weights: Vec<Vec<f64>>,
-    rates: Vec<Vec<f64>>,
-    factors: M::Factors,
-    point: M::Point,
-    /// Weights on the rates of this and the two later steps, one column per quantity.
-    carried: [Vec<f64>; 3],
-    /// Adjoint states, one column per quantity.
-    lambda: Vec<f64>,
-    /// Sizes of the first weights, to which later ones are compared.
-    scale: Vec<f64>,
-    rows: Vec<Vec<f64>>,
-    cost: Cost,
-    scratch: Scratch,
-}
-
-/// Vectors that every step needs and none keeps.
-struct Scratch {
-    on_memory: Vec<f64>,
-    z: Vec<f64>,
-    p: Vec<f64>,
+    back: CarryBack<'a, M>,
+    slots: Vec<Slot<M>>,
+    /// Derivatives by the fields, one row per quantity.
+    fields: Vec<Vec<f64>>,
+    largest: f64,
 }
 
 impl<'a, M: SensitiveDae> Backward<'a, M> {
-    fn new(model: &'a M, orbit: &'a Orbit, of: &'a [Quantity]) -> Self {
-        let (n, m, np) = (model.states(), model.memories(), model.parameters().len());
-        let columns = || vec![0.0; m * of.len()];
-        Self {
-            model,
-            orbit,
-            of,
-            weights: of.iter().map(|q| q.weights(&orbit.outputs)).collect(),
-            rates: orbit.rates(model),
-            factors: model.factors(),
+    fn new(chain: Chain<'a, M>, of: &'a [Quantity]) -> Self {
+        let (model, columns) = (chain.model, of.len());
+        let (n, m, u) = (model.states(), model.memories(), model.fields());
+        let slot = |_| Slot {
             point: model.point(),
-            carried: [columns(), columns(), columns()],
-            lambda: vec![0.0; n * of.len()],
-            scale: vec![0.0; of.len()],
-            rows: vec![vec![0.0; np]; of.len()],
-            cost: Cost::default(),
-            scratch: Scratch { on_memory: vec![0.0; m], z: vec![0.0; n], p: vec![0.0; np] },
+            by_z: vec![0.0; n * columns],
+            by_rate: vec![0.0; m * columns],
+            by_u: vec![0.0; u * columns],
+            lambda: vec![0.0; n * columns],
+            on_memory: vec![0.0; m * columns],
+        };
+        Self {
+            of,
+            weights: of.iter().map(|q| q.weights(&chain.orbit.outputs)).collect(),
+            back: CarryBack::new(model, chain.weights(), columns),
+            slots: (0..BLOCK.min(chain.orbit.steps())).map(slot).collect(),
+            fields: vec![vec![0.0; u]; columns],
+            largest: 0.0,
+            chain,
         }
     }
 
-    fn at(&self, n: usize) -> At<'a> {
-        At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &[] }
+    /// Once around the cycle; a sweep that is not forced only carries what the heads hold, until it has faded.
+    fn run(&mut self, forced: bool) -> Result<(), GradientError> {
+        for block in Way::Backward.blocks(self.chain.orbit.steps()) {
+            if !forced && self.back.heads.size() <= CLOSED * self.largest {
+                break;
+            }
+            self.chain.ready(block.clone())?;
+            self.prepare(block.clone(), forced);
+            self.march(block.clone(), forced);
+            self.gather(block.clone(), forced);
+            self.chain.cost.steps += block.len() as u64;
+            self.chain.cost.solves += (block.len() * self.of.len()) as u64;
+        }
+        Ok(())
     }
 
-    /// Weights of one quantity on the memory of a step, from those on the rates of this and the two later steps.
-    fn weigh_memory(&mut self, r: usize) {
-        let (m, a) = (self.model.memories(), self.orbit.scheme.rates(self.orbit.dt_s));
-        let [now, next, later] = &self.carried;
-        for (i, c) in self.scratch.on_memory.iter_mut().enumerate() {
-            let k = r * m + i;
-            *c = a[0] * now[k] + a[1] * next[k] + a[2] * later[k];
+    /// Evaluates the points of a block and, if forced, the derivatives of the outputs.
+    fn prepare(&mut self, block: Range<usize>, forced: bool) {
+        let Self { chain, of, weights, slots, .. } = self;
+        let (model, chain, of, weights) = (chain.model, &*chain, *of, &*weights);
+        slots[..block.len()].par_iter_mut().zip(block).for_each(|(slot, n)| {
+            let at = chain.at(n);
+            model.fix(at, &mut slot.point);
+            if forced {
+                [&mut slot.by_z, &mut slot.by_rate, &mut slot.by_u].into_iter().for_each(|v| v.fill(0.0));
+                for (r, quantity) in of.iter().enumerate() {
+                    slot.weigh(model, at, r, quantity.output, weights[r][n]);
+                }
+            }
+        });
+    }
+
+    /// The adjoint states of a block, one after the other.
+    fn march(&mut self, block: Range<usize>, forced: bool) {
+        let m = self.chain.model.memories();
+        for n in block.clone().rev() {
+            let slot = &mut self.slots[n - block.start];
+            let (by_z, by_rate): (&[f64], &[f64]) =
+                if forced { (&slot.by_z, &slot.by_rate) } else { (&[], &[]) };
+            self.back.forced_step(self.chain.factors(n), by_z, by_rate);
+            slot.lambda.copy_from_slice(&self.back.lambda);
+            for (c, w) in slot.on_memory.chunks_exact_mut(m).enumerate() {
+                self.back.weigh_memory(c);
+                w.copy_from_slice(&self.back.on_memory);
+            }
+            if forced {
+                self.largest = self.largest.max(self.back.heads.size());
+            }
         }
     }
 
-    /// Right-hand side of one quantity; starts the weights on the rate of this step.
-    fn force(&mut self, n: usize, r: usize, forced: bool) {
-        let (model, size, m) = (self.model, self.model.states(), self.model.memories());
-        self.carried[0][r * m..(r + 1) * m].fill(0.0);
-        self.scratch.z.fill(0.0);
-        let w = if forced { self.weights[r][n] } else { 0.0 };
-        if w != 0.0 {
-            let mut weights = vec![0.0; model.outputs()];
-            weights[self.of[r].output] = w;
-            let rate = &mut self.carried[0][r * m..(r + 1) * m];
-            let out = Cotangent { z: &mut self.scratch.z, rate, p: &mut self.rows[r] };
-            let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rates[n] };
-            model.output_cotangent(&self.point, at, &weights, out);
-        }
-        self.weigh_memory(r);
-        self.scratch.p.fill(0.0);
-        let (at, Scratch { on_memory, z, p }) = (self.at(n), &mut self.scratch);
-        model.memory_cotangent(&self.point, at, on_memory, z, p);
-        let lambda = &mut self.lambda[r * size..(r + 1) * size];
-        lambda.iter_mut().zip(&*z).for_each(|(l, z)| *l = -z);
+    /// Products of the adjoint states of a block with the derivatives by the fields.
+    fn gather(&mut self, block: Range<usize>, forced: bool) {
+        let Self { chain, slots, fields, .. } = self;
+        let (model, chain, slots) = (chain.model, &*chain, &*slots);
+        let (n_z, m, u) = (model.states(), model.memories(), model.fields());
+        fields.par_iter_mut().enumerate().for_each(|(r, row)| {
+            for n in block.clone().rev() {
+                let slot = &slots[n - block.start];
+                if forced {
+                    row.iter_mut().zip(&slot.by_u[r * u..(r + 1) * u]).for_each(|(a, b)| *a += b);
+                }
+                let lambda = &slot.lambda[r * n_z..(r + 1) * n_z];
+                let on_memory = &slot.on_memory[r * m..(r + 1) * m];
+                model.pull(&slot.point, chain.at(n), lambda, on_memory, row);
+            }
+        });
     }
 
-    /// Adds the products with the new adjoint state, completes the weights on the rate and measures them.
-    fn hand_on(&mut self, n: usize, r: usize) -> f64 {
-        let (model, size, m) = (self.model, self.model.states(), self.model.memories());
-        let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rates[n] };
-        let lambda = &self.lambda[r * size..(r + 1) * size];
-        let now = &mut self.carried[0][r * m..(r + 1) * m];
-        model.transposed_times(&self.point, at, lambda, now, &mut self.rows[r]);
-        let size = now.iter().fold(0.0f64, |a, c| a.max(c.abs()));
-        self.weigh_memory(r);
-        let (at, Scratch { on_memory, z, .. }) = (self.at(n), &mut self.scratch);
-        z.fill(0.0);
-        model.memory_cotangent(&self.point, at, on_memory, z, &mut self.rows[r]);
-        self.scale[r] = self.scale[r].max(size);
-        if self.scale[r] > 0.0 { size / self.scale[r] } else { 0.0 }
+    fn result(self, closure: f64) -> GradientTable {
+        let model = self.chain.model;
+        let row = |u: &Vec<f64>| {
+            let mut p = vec![0.0; model.parameters().len()];
+            model.field_cotangent(u, &mut p);
+            p
+        };
+        let cost = self.chain.cost;
+        let sweeps = cost.steps as f64 / self.chain.orbit.steps() as f64;
+        GradientTable {
+            rows: self.fields.iter().map(row).collect(),
+            fields: self.fields,
+            sweeps,
+            closure,
+            cost,
+        }
     }
 }
 
-impl<M: SensitiveDae> Sweep for Backward<'_, M> {
-    /// Steps back to `n` and adds its share; returns the relative size of the weights handed on.
-    fn step(&mut self, n: usize, forced: bool) -> Result<f64, GradientError> {
-        let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rates[n] };
-        self.model.fix(at, &mut self.point);
-        self.model.factor(at, self.orbit.scheme.rates(self.orbit.dt_s)[0], &mut self.factors)?;
-        self.cost.factorisations += 1;
-        self.carried.rotate_right(1);
-        (0..self.of.len()).for_each(|r| self.force(n, r, forced));
-        self.model.solve_transposed(&mut self.factors, &mut self.lambda);
-        self.cost.solves += self.of.len() as u64;
-        self.cost.steps += 1;
-        Ok((0..self.of.len()).map(|r| self.hand_on(n, r)).fold(0.0, f64::max))
-    }
-
-    fn result(self, closure: &Closure, sweeps: f64) -> GradientTable {
-        GradientTable { rows: self.rows, sweeps, closure: closure.left(), cost: self.cost }
+impl<M: SensitiveDae> Slot<M> {
+    /// Derivatives of the weighted output `o` for quantity `r`.
+    fn weigh(&mut self, model: &M, at: crate::dae::At, r: usize, o: usize, weight: f64) {
+        if weight == 0.0 {
+            return;
+        }
+        let (n, m, u) = (model.states(), model.memories(), model.fields());
+        let mut weights = vec![0.0; model.outputs()];
+        weights[o] = weight;
+        let out = Cotangent {
+            z: &mut self.by_z[r * n..(r + 1) * n],
+            rate: &mut self.by_rate[r * m..(r + 1) * m],
+            u: &mut self.by_u[r * u..(r + 1) * u],
+        };
+        model.output_cotangent(&self.point, at, &weights, out);
     }
 }

@@ -76,27 +76,44 @@ fn balanced<M: SensitiveDae>(
     let values: Vec<f64> = means.iter().map(|q| at.value(q)).collect();
     let answer = answer(equations, &values, &at.parameters, &by_mean)?;
     let first = at.parameters.len() - equations.unknowns();
-    for row in &mut table.rows {
+    let means_by_field = table.fields.split_off(of.len().min(table.fields.len()));
+    for (r, row) in table.rows.iter_mut().enumerate() {
         let by_unknown = row.split_off(first);
         for (j, slope) in row.iter_mut().enumerate() {
-            *slope += by_unknown.iter().enumerate().map(|(u, g)| g * answer[(u, j)]).sum::<f64>();
+            *slope +=
+                by_unknown.iter().enumerate().map(|(u, g)| g * answer.by_parameter[(u, j)]).sum::<f64>();
+        }
+        // Fields stand in the equations through the means only.
+        for (y, by_field) in means_by_field.iter().enumerate() {
+            let weight: f64 = by_unknown.iter().enumerate().map(|(u, g)| g * answer.by_mean[(u, y)]).sum();
+            table.fields[r].iter_mut().zip(by_field).for_each(|(f, m)| *f += weight * m);
         }
     }
     Ok(table)
 }
 
-/// `du/dp`, unknowns by parameters.
+/// How the unknowns answer.
+struct Answer {
+    /// To the parameters: `du/dp`, means included.
+    by_parameter: DMatrix<f64>,
+    /// To a change of the means at fixed unknowns.
+    by_mean: DMatrix<f64>,
+}
+
 fn answer(
     equations: &dyn CycleEquations,
     means: &[f64],
     p: &[f64],
     by_mean: &[Vec<f64>],
-) -> Result<DMatrix<f64>, GradientError> {
+) -> Result<Answer, GradientError> {
     let (k, first) = (equations.unknowns(), p.len() - equations.unknowns());
     let (r_y, r_p) = equations.slopes(means, p);
     let total =
         |i: usize, j: usize| r_p[i][j] + r_y[i].iter().zip(by_mean).map(|(r, row)| r * row[j]).sum::<f64>();
     let by_unknown = DMatrix::from_fn(k, k, |i, j| total(i, first + j));
     let by_parameter = DMatrix::from_fn(k, first, |i, j| -total(i, j));
-    by_unknown.lu().solve(&by_parameter).ok_or(GradientError::Unbalanced)
+    let means_alone = DMatrix::from_fn(k, means.len(), |i, y| -r_y[i][y]);
+    let lu = by_unknown.lu();
+    let solve = |rhs: &DMatrix<f64>| lu.solve(rhs).ok_or(GradientError::Unbalanced);
+    Ok(Answer { by_parameter: solve(&by_parameter)?, by_mean: solve(&means_alone)? })
 }

@@ -57,6 +57,7 @@ impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
         let varied = p.len() - model.cycle().map_or(0, |c| c.unknowns());
         let mut table = GradientTable {
             rows: vec![vec![0.0; varied]; of.len()],
+            fields: Vec::new(),
             sweeps: 0.0,
             closure: 0.0,
             cost: Cost::default(),

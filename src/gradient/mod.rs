@@ -16,6 +16,7 @@
 
 mod adjoint;
 mod balanced;
+mod chain;
 mod finite;
 mod taylor;
 mod transient;
@@ -30,11 +31,6 @@ use crate::orbit::{Orbit, OrbitError, OrbitOptions, Quantity};
 use crate::run::{Cancel, Cancelled, Cost};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
-
-/// Memory below this share of its start counts as gone.
-const CLOSED: f64 = 1e-13;
-/// Sweeps over the cycle that are granted at least, however few cycles the settling may take.
-const MOST_SWEEPS: usize = 50;
 
 /// Name of a gradient engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
@@ -85,9 +81,12 @@ pub fn engine<M: SensitiveDae>(name: EngineName, perturbation: f64) -> Box<dyn G
 pub struct GradientTable {
     /// One row per quantity, one entry per parameter.
     pub rows: Vec<Vec<f64>>,
+    /// One row per quantity: derivatives by the model's fields ([`SensitiveDae::fields`]), of which the rows are projections.
+    /// ADJ only, else empty.
+    pub fields: Vec<Vec<f64>>,
     /// Sweeps over the cycle (settled cycles for the differences).
     pub sweeps: f64,
-    /// Share of the memory that was left when sweeping stopped; 0 for the differences.
+    /// Share of the memory over which the sensitivity misses being periodic; 0 for the differences.
     pub closure: f64,
     /// Work done, the simulation at the point itself not included.
     pub cost: Cost,
@@ -109,9 +108,7 @@ pub enum GradientError {
     #[error("the balance over the cycle (film temperature) is singular here")]
     Unbalanced,
     /// The memory of the orbit does not fade.
-    #[error(
-        "the sensitivity does not become periodic within {0} sweeps: the orbit is hardly stable; raise orbit.max_cycles"
-    )]
+    #[error("the sensitivity does not become periodic within {0} sweeps: the orbit is hardly stable")]
     NotClosed(usize),
     /// Stopped from outside.
     #[error(transparent)]
@@ -132,58 +129,4 @@ pub trait GradientEngine<M: SensitiveDae>: Send + Sync {
         of: &[Quantity],
         cancel: &Cancel,
     ) -> Result<GradientTable, GradientError>;
-}
-
-/// One engine's sweep over the cycle, step by step.
-trait Sweep {
-    /// Takes the step at `n`; a forced step adds its own share, any other only carries memory on. Returns the memory's size.
-    fn step(&mut self, n: usize, forced: bool) -> Result<f64, GradientError>;
-    /// What was gathered so far.
-    fn result(self, closure: &Closure, sweeps: f64) -> GradientTable;
-}
-
-/// One forced sweep in the order given, then sweeps that carry the memory alone until it has faded.
-fn sweep_until_closed(
-    mut sweep: impl Sweep,
-    order: impl Iterator<Item = usize> + Clone,
-    options: &OrbitOptions,
-    cancel: &Cancel,
-) -> Result<GradientTable, GradientError> {
-    let (mut closure, mut taken) = (Closure::new(), 0);
-    let most = options.max_cycles.max(MOST_SWEEPS);
-    for pass in 0..most {
-        for n in order.clone() {
-            cancel.check()?;
-            closure.note(sweep.step(n, pass == 0)?);
-            taken += 1;
-            if pass > 0 && closure.left() <= CLOSED {
-                return Ok(sweep.result(&closure, taken as f64 / options.steps as f64));
-            }
-        }
-    }
-    Err(GradientError::NotClosed(most))
-}
-
-/// Follows a memory that sweeps over the cycle until it has faded.
-struct Closure {
-    largest: f64,
-    last: [f64; 2],
-}
-
-impl Closure {
-    fn new() -> Self {
-        Self { largest: 0.0, last: [f64::INFINITY; 2] }
-    }
-
-    /// Takes the size of the memory after a step.
-    fn note(&mut self, size: f64) {
-        self.largest = self.largest.max(size);
-        self.last = [size, self.last[0]];
-    }
-
-    /// Share of the memory left. Two steps must agree, as the difference formula looks back twice.
-    fn left(&self) -> f64 {
-        let now = self.last[0].max(self.last[1]);
-        if self.largest > 0.0 { now / self.largest } else { 0.0 }
-    }
 }

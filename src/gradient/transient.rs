@@ -1,20 +1,23 @@
 //! TRA, the transient approach: the tangent equations marched along the orbit.
 //!
-//! The sensitivities `s_n = dz_n/dp` of all parameters and those of the memory, `d_n = M_z s_n + M_p`, solve with the
+//! The sensitivities `s_n = dz_n/dp` of all parameters and those of the memory, `d_n = M_z s_n + M_u u_p`, solve with the
 //! matrix of the step itself
 //!
 //! ```text
-//! (F_z + a_0/dt F_m' M_z) s_n = -F_p - F_m' (a_0 M_p + a_1 d_{n-1} + a_2 d_{n-2}) / dt,       indices modulo N
-//! dQ/dp = sum_n w_n (g_z s_n + g_m' d'_n + g_p)
+//! (F_z + a_0/dt F_m' M_z) s_n = -F_u u_p - F_m' (a_0 M_u u_p + a_1 d_{n-1} + a_2 d_{n-2}) / dt,       indices modulo N
+//! dQ/dp = sum_n w_n (g_z s_n + g_m' d'_n + g_u u_p)
 //! ```
 //!
-//! The first sweep starts from `d = 0` before the cycle. As everything is linear, what the wrong start left out is the
-//! response to the memory at the end of the sweep; further sweeps carry that memory alone, until it has faded.
+//! The first sweep starts from `d = 0` before the cycle. The memory it leaves at the end is carried on to its fixed point
+//! (GMRES over sweeps that only solve), and a last sweep adds the response to what was missing.
 
-use super::{Closure, GradientError, GradientTable, Sweep, sweep_until_closed};
+use super::chain::{BLOCK, CLOSED, COLUMNS, Carrier, Chain, Way};
+use super::{GradientError, GradientTable};
 use crate::dae::{At, Direction, SensitiveDae};
-use crate::orbit::{Orbit, OrbitOptions, Quantity};
-use crate::run::{Cancel, Cost};
+use crate::orbit::{Carry, Heads, Orbit, OrbitOptions, Quantity};
+use crate::run::Cancel;
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// Derivatives by all parameters, cycle unknowns held.
 pub(super) fn transient<M: SensitiveDae>(
@@ -24,110 +27,179 @@ pub(super) fn transient<M: SensitiveDae>(
     of: &[Quantity],
     cancel: &Cancel,
 ) -> Result<GradientTable, GradientError> {
-    sweep_until_closed(Forward::new(model, at, of), 0..at.steps(), options, cancel)
+    let (np, pair) = (model.parameters().len(), 2 * model.memories());
+    let mut sweep = Forward::new(Chain::new(model, at, options, cancel), of);
+    sweep.run(true)?;
+    let mut packed = vec![0.0; pair * np];
+    let parts = |packed: &mut Vec<f64>| -> Vec<Range<usize>> {
+        (0..packed.len())
+            .step_by((COLUMNS * pair).max(1))
+            .map(|k| k..(k + COLUMNS * pair).min(pair * np))
+            .collect()
+    };
+    let ranges = parts(&mut packed);
+    for (group, range) in sweep.groups.iter_mut().zip(ranges.clone()) {
+        group.carry.heads.pack(&mut packed[range]);
+    }
+    let rates = sweep.chain.weights();
+    let mut carriers: Vec<Carry<M>> =
+        sweep.groups.iter().map(|g| Carry::new(model, rates, g.count)).collect();
+    let closure = sweep.chain.close(Way::Forward, &mut carriers, &mut packed)?;
+    for (group, range) in sweep.groups.iter_mut().zip(ranges) {
+        group.carry.heads.unpack(&packed[range]);
+    }
+    sweep.run(false)?;
+    Ok(sweep.result(closure.residual))
+}
+
+impl<M: SensitiveDae> Carrier<M> for Carry<'_, M> {
+    fn heads(&mut self) -> &mut Heads {
+        &mut self.heads
+    }
+
+    fn step(&mut self, factors: &M::Factors) {
+        Carry::step(self, factors);
+    }
+}
+
+/// Some parameters whose sensitivities advance side by side.
+struct Group<'a, M: SensitiveDae> {
+    first: usize,
+    count: usize,
+    /// `u_p` of each.
+    fields: Vec<f64>,
+    carry: Carry<'a, M>,
+    /// `F_u u_p` and `M_u u_p` of the step at hand, of one parameter and of all.
+    by_u: Vec<f64>,
+    memory_by_u: Vec<f64>,
+    /// One row per quantity.
+    rows: Vec<Vec<f64>>,
+    largest: f64,
 }
 
 struct Forward<'a, M: SensitiveDae> {
-    model: &'a M,
-    orbit: &'a Orbit,
+    chain: Chain<'a, M>,
     of: &'a [Quantity],
     weights: Vec<Vec<f64>>,
-    rates: Vec<Vec<f64>>,
-    factors: M::Factors,
-    point: M::Point,
-    /// Sensitivities of the state, one column per parameter.
-    s: Vec<f64>,
-    /// Sensitivities of the memory at this and the two earlier steps, one column per parameter.
-    d: [Vec<f64>; 3],
-    rows: Vec<Vec<f64>>,
-    cost: Cost,
+    points: Vec<M::Point>,
+    groups: Vec<Group<'a, M>>,
 }
 
 impl<'a, M: SensitiveDae> Forward<'a, M> {
-    fn new(model: &'a M, orbit: &'a Orbit, of: &'a [Quantity]) -> Self {
-        let (n, m, np) = (model.states(), model.memories(), model.parameters().len());
-        let column = || vec![0.0; m * np];
+    fn new(chain: Chain<'a, M>, of: &'a [Quantity]) -> Self {
+        let (model, rates) = (chain.model, chain.weights());
+        let np = model.parameters().len();
+        let (n, m, u) = (model.states(), model.memories(), model.fields());
+        let group = |first: usize| {
+            let count = COLUMNS.min(np - first);
+            let mut fields = vec![0.0; u * count];
+            for (k, du) in fields.chunks_exact_mut(u).enumerate() {
+                let mut dp = vec![0.0; np];
+                dp[first + k] = 1.0;
+                model.field_tangent(&dp, du);
+            }
+            Group {
+                first,
+                count,
+                fields,
+                carry: Carry::new(model, rates, count),
+                by_u: vec![0.0; n * count],
+                memory_by_u: vec![0.0; m * count],
+                rows: vec![vec![0.0; count]; of.len()],
+                largest: 0.0,
+            }
+        };
         Self {
-            model,
-            orbit,
             of,
-            weights: of.iter().map(|q| q.weights(&orbit.outputs)).collect(),
-            rates: orbit.rates(model),
-            factors: model.factors(),
-            point: model.point(),
-            s: vec![0.0; n * np],
-            d: [column(), column(), column()],
-            rows: vec![vec![0.0; np]; of.len()],
-            cost: Cost::default(),
+            weights: of.iter().map(|q| q.weights(&chain.orbit.outputs)).collect(),
+            points: (0..BLOCK.min(chain.orbit.steps())).map(|_| model.point()).collect(),
+            groups: (0..np).step_by(COLUMNS).map(group).collect(),
+            chain,
         }
     }
 
-    /// Unit vector of a parameter, or nothing on a sweep that only carries memory.
-    fn direction(&self, j: usize, forced: bool) -> Vec<f64> {
-        let mut p = vec![0.0; self.model.parameters().len()];
-        p[j] = if forced { 1.0 } else { 0.0 };
-        p
-    }
-
-    /// Rate that the memory of parameter `j` has, its newest part apart.
-    fn past(&self, j: usize) -> Vec<f64> {
-        let (m, a) = (self.model.memories(), self.orbit.scheme.rates(self.orbit.dt_s));
-        let column = |k: usize| &self.d[k][j * m..(j + 1) * m];
-        column(1).iter().zip(column(2)).map(|(last, before)| a[1] * last + a[2] * before).collect()
-    }
-
-    fn right_hand_side(&mut self, n: usize, j: usize, forced: bool) {
-        let (model, size) = (self.model, self.model.states());
-        let a = self.orbit.scheme.rates(self.orbit.dt_s);
-        let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rates[n] };
-        let (p, mut rate) = (self.direction(j, forced), self.past(j));
-        if forced {
-            let mut by_p = vec![0.0; model.memories()];
-            model.memory_tangent(&self.point, at, &vec![0.0; size], &p, &mut by_p);
-            rate.iter_mut().zip(&by_p).for_each(|(r, d)| *r += a[0] * d);
+    /// Once around the cycle; a sweep that is not forced only carries what the heads hold, until it has faded.
+    fn run(&mut self, forced: bool) -> Result<(), GradientError> {
+        for block in Way::Forward.blocks(self.chain.orbit.steps()) {
+            let open = |g: &Group<M>| forced || g.carry.heads.size() > CLOSED * g.largest;
+            if !self.groups.iter().any(open) {
+                break;
+            }
+            self.chain.ready(block.clone())?;
+            let Self { chain, of, weights, points, groups } = self;
+            let (chain_now, of, weights) = (&*chain, *of, &*weights);
+            points[..block.len()].par_iter_mut().zip(block.clone()).for_each(|(point, n)| {
+                chain_now.model.fix(chain_now.at(n), point);
+            });
+            let points = &*points;
+            groups.par_iter_mut().for_each(|group| {
+                for n in block.clone() {
+                    let weight: Vec<(usize, f64)> =
+                        of.iter().zip(weights).map(|(q, w)| (q.output, w[n])).collect();
+                    let (point, at) = (&points[n - block.start], chain_now.at(n));
+                    group.advance(chain_now.factors(n), point, at, &weight, forced);
+                }
+            });
+            let columns: usize = groups.iter().map(|g| g.count).sum();
+            chain.cost.steps += block.len() as u64;
+            chain.cost.solves += (block.len() * columns) as u64;
         }
-        let rhs = &mut self.s[j * size..(j + 1) * size];
-        rhs.fill(0.0);
-        model.times(&self.point, at, &rate, &p, rhs);
-        rhs.iter_mut().for_each(|v| *v = -*v);
+        Ok(())
     }
 
-    /// Memory of the new sensitivity, and its share in the quantities; returns the size of the memory.
-    fn hand_on(&mut self, n: usize, j: usize, forced: bool) -> f64 {
-        let (model, size, m) = (self.model, self.model.states(), self.model.memories());
-        let a = self.orbit.scheme.rates(self.orbit.dt_s);
-        let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rates[n] };
-        let (p, past) = (self.direction(j, forced), self.past(j));
-        let s = &self.s[j * size..(j + 1) * size];
-        let new = &mut self.d[0][j * m..(j + 1) * m];
-        model.memory_tangent(&self.point, at, s, &p, new);
-        let rate: Vec<f64> = past.iter().zip(&*new).map(|(past, new)| past + a[0] * new).collect();
-        let mut dy = vec![0.0; model.outputs()];
-        model.output_tangent(&self.point, at, Direction { z: s, rate: &rate, p: &p }, &mut dy);
-        for ((row, quantity), weights) in self.rows.iter_mut().zip(self.of).zip(&self.weights) {
-            row[j] += weights[n] * dy[quantity.output];
+    fn result(self, closure: f64) -> GradientTable {
+        let row = |r: usize| self.groups.iter().flat_map(|g| g.rows[r].iter().copied()).collect();
+        let cost = self.chain.cost;
+        let sweeps = cost.steps as f64 / self.chain.orbit.steps() as f64;
+        debug_assert!(self.groups.iter().enumerate().all(|(k, g)| g.first == k * COLUMNS));
+        GradientTable {
+            rows: (0..self.of.len()).map(row).collect(),
+            fields: Vec::new(),
+            sweeps,
+            closure,
+            cost,
         }
-        model.parameter_scale(j) * model.memory_change(new)
     }
 }
 
-impl<M: SensitiveDae> Sweep for Forward<'_, M> {
-    /// Advances all sensitivities to step `n` and adds their share; returns the size of the memory.
-    fn step(&mut self, n: usize, forced: bool) -> Result<f64, GradientError> {
-        let np = self.model.parameters().len();
-        let at = At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rates[n] };
-        self.model.fix(at, &mut self.point);
-        self.model.factor(at, self.orbit.scheme.rates(self.orbit.dt_s)[0], &mut self.factors)?;
-        self.cost.factorisations += 1;
-        self.d.rotate_right(1);
-        (0..np).for_each(|j| self.right_hand_side(n, j, forced));
-        self.model.solve(&mut self.factors, &mut self.s);
-        self.cost.solves += np as u64;
-        self.cost.steps += 1;
-        Ok((0..np).map(|j| self.hand_on(n, j, forced)).fold(0.0, f64::max))
-    }
-
-    fn result(self, closure: &Closure, sweeps: f64) -> GradientTable {
-        GradientTable { rows: self.rows, sweeps, closure: closure.left(), cost: self.cost }
+impl<M: SensitiveDae> Group<'_, M> {
+    /// Over one step, and its share in the quantities (`weight`: output and weight of each).
+    fn advance(
+        &mut self,
+        factors: &M::Factors,
+        point: &M::Point,
+        at: At,
+        weight: &[(usize, f64)],
+        forced: bool,
+    ) {
+        let Self { fields, carry, by_u, memory_by_u, .. } = self;
+        let (model, a) = (carry.model, carry.rates);
+        let (n, m, u) = (model.states(), model.memories(), model.fields());
+        if forced {
+            for (k, du) in fields.chunks_exact(u).enumerate() {
+                let (residual, memory) =
+                    (&mut by_u[k * n..(k + 1) * n], &mut memory_by_u[k * m..(k + 1) * m]);
+                model.push(point, at, du, residual, memory);
+            }
+            carry.forced_step(factors, by_u, memory_by_u);
+        } else {
+            carry.forced_step(factors, &[], &[]);
+        }
+        let none = vec![0.0; u];
+        let wanted = weight.iter().any(|(_, w)| *w != 0.0);
+        let mut dy = vec![0.0; model.outputs()];
+        for k in (0..self.count).filter(|_| wanted) {
+            let [now, last, before] = self.carry.heads.at.each_ref().map(|v| &v[k * m..(k + 1) * m]);
+            let rate: Vec<f64> = (0..m).map(|i| a[0] * now[i] + a[1] * last[i] + a[2] * before[i]).collect();
+            let u = if forced { &self.fields[k * u..(k + 1) * u] } else { &none };
+            let z = &self.carry.z[k * n..(k + 1) * n];
+            model.output_tangent(point, at, Direction { z, rate: &rate, u }, &mut dy);
+            for (row, (output, w)) in self.rows.iter_mut().zip(weight) {
+                row[k] += w * dy[*output];
+            }
+        }
+        if forced {
+            self.largest = self.largest.max(self.carry.heads.size());
+        }
     }
 }

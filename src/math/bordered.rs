@@ -13,6 +13,8 @@ use nalgebra::DMatrix;
 
 /// Most border unknowns: journal motion with tilt, their velocities and a film temperature fit well.
 const MOST: usize = 16;
+/// Right-hand sides that are solved side by side: as many as a cache holds beside the factors.
+const TOGETHER: usize = 8;
 
 /// Factorised bordered matrix. Fill [`Self::columns`], [`Self::rows`] and [`Self::corner`], then call [`Self::factor`].
 #[derive(Debug, Clone)]
@@ -43,6 +45,12 @@ impl Bordered {
             corner: DMatrix::zeros(k, k),
             sigma_inverse: DMatrix::zeros(k, k),
         }
+    }
+
+    /// Size of the factors of such a matrix.
+    pub fn bytes(blocks: usize, b: usize, k: usize) -> usize {
+        let band = if blocks > 0 { CyclicBand::bytes(blocks, b) } else { 0 };
+        band + (2 * blocks * b * k + 2 * k * k) * size_of::<f64>()
     }
 
     /// Number of unknowns, band and border.
@@ -85,6 +93,10 @@ impl Bordered {
 
     /// Replaces each column of `rhs` by the solution.
     pub fn solve(&self, rhs: &mut [f64]) {
+        rhs.chunks_mut(TOGETHER * self.len()).for_each(|some| self.solve_some(some));
+    }
+
+    fn solve_some(&self, rhs: &mut [f64]) {
         if let Some(band) = &self.band {
             band.solve_spaced(rhs, self.len());
         }
@@ -102,6 +114,10 @@ impl Bordered {
 
     /// Replaces each column of `rhs` by the solution of the transposed system.
     pub fn solve_transposed(&self, rhs: &mut [f64]) {
+        rhs.chunks_mut(TOGETHER * self.len()).for_each(|some| self.solve_some_transposed(some));
+    }
+
+    fn solve_some_transposed(&self, rhs: &mut [f64]) {
         for x in rhs.chunks_exact_mut(self.len()) {
             let (x1, x2) = x.split_at_mut(self.n);
             for (j, v) in x2.iter_mut().enumerate() {

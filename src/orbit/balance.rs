@@ -1,8 +1,9 @@
 //! Cycle unknowns: Broyden's method around the settled cycle, `R(mean y(u), u) = 0`.
 //!
 //! Each round settles the cycle at the unknowns of the moment, from the cycle of the round before, only as sharply as the
-//! round deserves; the Jacobian starts from the model's guess and learns from every round (Broyden 1965). The last
-//! round is settled to the full tolerance, so the result does not depend on the way.
+//! round deserves; the Jacobian starts from the model's guess (or from that of a similar cycle) and learns from every
+//! round (Broyden 1965). From the third round on the states are continued along the change of the unknowns, so that one pass
+//! a round is enough. The last round is settled to the full tolerance, so the result does not depend on the way.
 
 use super::settle::settle_fixed;
 use super::{Orbit, OrbitError, OrbitOptions};
@@ -31,21 +32,24 @@ pub(super) fn settle_balanced<M: LinearisedDae>(
     let mut p = model.parameters().to_vec();
     let (k, wanted) = (equations.unknowns(), MULTIPLE * options.periodicity_tolerance);
     let first = p.len() - k;
-    if let Some(known) = start.filter(|o| o.parameters.len() == p.len()) {
+    let known = start.filter(|o| o.parameters.len() == p.len());
+    if let Some(known) = known {
         p[first..].copy_from_slice(&known.parameters[first..]);
     }
+    let mut jacobian = known.filter(|o| o.response.len() == k).map(|o| rows(&o.response));
     let scale = equations.scale();
-    let mut near = start.cloned();
+    let (mut near, mut older): (Option<Orbit>, Option<Orbit>) = (start.cloned(), None);
     let mut sharpness = if start.is_some() { FIRST * 1e-2 } else { FIRST };
-    let mut jacobian: Option<DMatrix<f64>> = None;
     let mut before: Option<(DVector<f64>, DVector<f64>)> = None;
-    let (mut cost, mut cycles, mut residual) = (Cost::default(), 0.0, f64::INFINITY);
+    let (mut cost, mut cycles, mut corrections) = (Cost::default(), 0.0, 0);
+    let mut residual = f64::INFINITY;
     for _ in 0..MOST_ROUNDS {
         let tolerance = sharpness.max(options.periodicity_tolerance);
         let now = OrbitOptions { periodicity_tolerance: tolerance, ..*options };
         let orbit = settle_fixed(&model.with_parameters(&p)?, &now, near.as_ref(), cancel)?;
         cost += orbit.cost;
         cycles += orbit.cycles;
+        corrections += orbit.corrections;
         let (r, means) = residual_of(equations, &orbit, &p);
         let b = jacobian.get_or_insert_with(|| rows(&equations.guess(&means, &p)));
         if let Some((step, old)) = &before {
@@ -57,7 +61,8 @@ pub(super) fn settle_balanced<M: LinearisedDae>(
         residual = step.iter().zip(&scale).map(|(d, s)| (d / s).abs()).fold(0.0, f64::max);
         if residual <= wanted && tolerance <= options.periodicity_tolerance {
             let cost = Cost { simulations: 1, ..cost };
-            return Ok(Orbit { balance: residual, cycles, cost, ..orbit });
+            let response = b.row_iter().map(|r| r.iter().copied().collect()).collect();
+            return Ok(Orbit { balance: residual, cycles, corrections, response, cost, ..orbit });
         }
         if !residual.is_finite() {
             break;
@@ -66,13 +71,29 @@ pub(super) fn settle_balanced<M: LinearisedDae>(
             step *= LONGEST / residual;
         }
         sharpness = SHARE * residual.min(LONGEST);
+        let mut share = 0.0;
         if residual > wanted {
             p[first..].iter_mut().zip(step.iter()).for_each(|(u, d)| *u += d);
+            share = before.as_ref().map_or(0.0, |(last, _)| step.dot(last) / last.dot(last));
             before = Some((step, r));
         }
-        near = Some(orbit);
+        let next = continued(&model.with_parameters(&p)?, &orbit, older.as_ref(), share);
+        older = Some(orbit);
+        near = Some(next);
     }
     Err(OrbitError::NotBalanced { rounds: MOST_ROUNDS, residual })
+}
+
+/// The cycle of the next round, guessed from the last two: `share` is the next change of the unknowns over the last one.
+fn continued<M: LinearisedDae>(model: &M, now: &Orbit, older: Option<&Orbit>, share: f64) -> Orbit {
+    let mut next = now.clone();
+    let Some(older) = older.filter(|_| share != 0.0 && share.abs() <= 1.0) else { return next };
+    for (z, old) in next.states.iter_mut().zip(&older.states) {
+        let change: Vec<f64> = z.iter().zip(old).map(|(z, old)| share * (z - old)).collect();
+        let admissible = model.admissible(z, &change);
+        model.advance(z, &change, admissible);
+    }
+    next
 }
 
 fn residual_of(equations: &dyn CycleEquations, orbit: &Orbit, p: &[f64]) -> (DVector<f64>, Vec<f64>) {

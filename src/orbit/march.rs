@@ -1,5 +1,6 @@
 //! Marching a model until its cycle repeats.
 
+use super::accelerate::Accelerator;
 use super::step::{From, Stepper, Taken};
 use super::{Orbit, OrbitError, OrbitOptions};
 use crate::dae::{At, LinearisedDae};
@@ -9,19 +10,24 @@ use crate::run::{Cancel, Cost};
 const CANCEL_EVERY: usize = 16;
 
 pub(super) struct March<'m, M: LinearisedDae> {
-    model: &'m M,
-    options: OrbitOptions,
-    dt_s: f64,
-    stepper: Stepper<'m, M>,
+    pub model: &'m M,
+    pub options: OrbitOptions,
+    pub dt_s: f64,
+    pub stepper: Stepper<'m, M>,
     /// States of the pass in progress and, ahead of it, of the pass before (or of the similar model).
-    states: Vec<Vec<f64>>,
-    /// Memories of the last two steps, newest first.
-    last: [Vec<f64>; 2],
+    pub states: Vec<Vec<f64>>,
+    /// Memories of the same passes.
+    pub memories: Vec<Vec<f64>>,
+    /// Memories of the last two steps, newest first: what the next step starts from.
+    pub last: [Vec<f64>; 2],
+    /// Memories of the same steps one pass earlier.
+    pub replaced: [Vec<f64>; 2],
     /// Whether `states` ahead of the march may serve as guesses.
     warm: bool,
-    taken: usize,
+    pub taken: usize,
     /// Steps taken when the last one was walked instead of solved.
     walked: Option<usize>,
+    accelerator: Accelerator<M>,
     periodicity: f64,
 }
 
@@ -33,23 +39,24 @@ impl<'m, M: LinearisedDae> March<'m, M> {
             Some(orbit) if orbit.states.iter().all(|z| model.contains(z)) => (orbit.states.clone(), true),
             _ => (vec![model.cold_start(); count], false),
         };
-        let remembered = |back: usize| {
-            let mut m = vec![0.0; model.memories()];
-            model.memory((count - back) as f64 * dt_s, &states[count - back], &mut m);
-            m
-        };
-        let last = [remembered(1), remembered(2)];
-        let stepper = Stepper::new(model);
+        let mut memories = vec![vec![0.0; model.memories()]; count];
+        for n in count - 2..count {
+            model.memory(n as f64 * dt_s, &states[n], &mut memories[n]);
+        }
+        let last = [memories[count - 1].clone(), memories[count - 2].clone()];
         Self {
             model,
             options: *options,
             dt_s,
-            stepper,
-            last,
+            stepper: Stepper::new(model),
             states,
+            replaced: last.clone(),
+            last,
+            memories,
             warm,
             taken: 0,
             walked: None,
+            accelerator: Accelerator::new(model, options),
             periodicity: f64::INFINITY,
         }
     }
@@ -64,12 +71,20 @@ impl<'m, M: LinearisedDae> March<'m, M> {
             if self.taken >= count * self.options.max_cycles {
                 return Err(self.unsettled());
             }
-            let difference = self.advance()?;
+            let difference = match self.advance() {
+                Ok(difference) => difference,
+                Err(failed) if !self.take_back() => return Err(failed),
+                Err(_) => continue,
+            };
             // Only a full cycle has left every start behind.
             let solved = self.walked.is_none_or(|w| self.taken > w + count + 1);
-            let settled = self.taken > count && solved && difference <= self.options.periodicity_tolerance;
+            let whole = self.taken > count && self.accelerator.verified(self.taken + 1, count);
+            let settled = whole && solved && difference <= self.options.periodicity_tolerance;
             close = if settled { close + 1 } else { 0 };
             self.periodicity = if close == 2 { self.periodicity.max(difference) } else { difference };
+            if close == 0 {
+                self.accelerate(difference);
+            }
         }
         Ok(())
     }
@@ -93,7 +108,6 @@ impl<'m, M: LinearisedDae> March<'m, M> {
         let n = self.taken % count;
         let t_s = n as f64 * self.dt_s;
         let mut z = self.guess(n);
-        let old = if self.taken >= count { Some(self.memory(t_s, n)) } else { None };
         let from =
             From { z: &self.states[(n + count - 1) % count], last: &self.last[0], before: &self.last[1] };
         let taken = self.stepper.step(self.options.scheme, self.dt_s, t_s, &mut z, from);
@@ -103,18 +117,19 @@ impl<'m, M: LinearisedDae> March<'m, M> {
         if taken == Taken::Walked {
             self.walked = Some(self.taken);
         }
+        self.accelerator.record(n, taken, &mut self.stepper.factors);
+        self.replaced.rotate_right(1);
+        self.replaced[0].copy_from_slice(&self.memories[n]);
+        self.model.memory(t_s, &self.states[n], &mut self.memories[n]);
         self.last.rotate_right(1);
-        self.model.memory(t_s, &self.states[n], &mut self.last[0]);
-        Ok(old.map_or(f64::INFINITY, |old| {
-            let change: Vec<f64> = self.last[0].iter().zip(&old).map(|(a, b)| a - b).collect();
-            self.model.memory_change(&change)
-        }))
+        self.last[0].copy_from_slice(&self.memories[n]);
+        Ok(if self.taken > count { self.difference(0) } else { f64::INFINITY })
     }
 
-    fn memory(&self, t_s: f64, n: usize) -> Vec<f64> {
-        let mut m = vec![0.0; self.model.memories()];
-        self.model.memory(t_s, &self.states[n], &mut m);
-        m
+    /// How far the memory of the last step (or the one before) is from that of the pass before.
+    pub fn difference(&self, back: usize) -> f64 {
+        let pair = self.last[back].iter().zip(&self.replaced[back]);
+        self.model.memory_change(&pair.map(|(a, b)| a - b).collect::<Vec<f64>>())
     }
 
     /// The state of the pass before, or the last step continued.
@@ -128,6 +143,21 @@ impl<'m, M: LinearisedDae> March<'m, M> {
         z
     }
 
+    /// Corrects the start of the next pass where that pays.
+    fn accelerate(&mut self, difference: f64) {
+        let mut accelerator = std::mem::take(&mut self.accelerator);
+        accelerator.consider(self, difference);
+        self.accelerator = accelerator;
+    }
+
+    /// Goes back to where the last correction was made, if there was one.
+    fn take_back(&mut self) -> bool {
+        let mut accelerator = std::mem::take(&mut self.accelerator);
+        let back = accelerator.take_back(self);
+        self.accelerator = accelerator;
+        back
+    }
+
     pub fn finish(self) -> Orbit {
         let count = self.options.steps;
         let cost = Cost { simulations: 1, ..self.stepper.cost };
@@ -139,7 +169,9 @@ impl<'m, M: LinearisedDae> March<'m, M> {
             outputs: Vec::with_capacity(count),
             periodicity: self.periodicity,
             balance: 0.0,
+            response: Vec::new(),
             cycles: self.taken as f64 / count as f64,
+            corrections: self.accelerator.corrections,
             cost,
         };
         let rates = orbit.rates(self.model);

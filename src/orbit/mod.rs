@@ -13,12 +13,15 @@
 //! Marching stops as soon as the memory meets that of the cycle before: the rest of the cycle would
 //! repeat it. Deliberately not here: acceleration of slow settling, step size control (gradients want frozen steps).
 
+mod accelerate;
 mod balance;
+mod carry;
 mod march;
 mod quantity;
 mod settle;
 mod step;
 
+pub(crate) use carry::{Carry, Heads};
 pub use quantity::{Quantity, Reduction};
 pub use settle::{Orbit, OrbitError, OrbitOptions, settle};
 

@@ -18,6 +18,9 @@ pub struct OrbitOptions {
     pub periodicity_tolerance: f64,
     /// Cycles after which settling is given up.
     pub max_cycles: usize,
+    /// Memory that the factors of a cycle may take, bytes. If there is room for them, slow settling is accelerated and
+    /// gradients factorise each step once; without, steps are factorised again whenever they are needed.
+    pub memory_bytes: usize,
 }
 
 /// Why there is no settled cycle.
@@ -76,8 +79,12 @@ pub struct Orbit {
     pub periodicity: f64,
     /// Last change of the cycle unknowns in units of their scale; 0 without any.
     pub balance: f64,
+    /// Derivatives of the equations of the cycle unknowns by the unknowns, one row each, as the search learned them.
+    pub response: Vec<Vec<f64>>,
     /// Cycles marched, a fraction.
     pub cycles: f64,
+    /// Corrections of the period map by Newton's method on the way.
+    pub corrections: usize,
     /// Work done.
     pub cost: Cost,
 }

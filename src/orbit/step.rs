@@ -25,8 +25,11 @@ const SHORT_STEPS: [usize; 3] = [8, 64, 512];
 /// Workspace and counters of a march.
 pub(super) struct Stepper<'m, M: LinearisedDae> {
     model: &'m M,
-    factors: M::Factors,
+    /// Factors of the last iteration.
+    pub factors: M::Factors,
+    room: M::Room,
     residual: Vec<f64>,
+    /// Memory of the last iteration.
     memory: Vec<f64>,
     past: Vec<f64>,
     pub cost: Cost,
@@ -57,6 +60,7 @@ impl<'m, M: LinearisedDae> Stepper<'m, M> {
         Self {
             model,
             factors: model.factors(),
+            room: model.room(),
             residual: vec![0.0; model.states()],
             memory: vec![0.0; model.memories()],
             past: vec![0.0; model.memories()],
@@ -139,12 +143,13 @@ impl<'m, M: LinearisedDae> Stepper<'m, M> {
         let mut damping = Damping::new();
         for _ in 0..MOST_ITERATIONS {
             let step = Step { t_s, z, alpha, past: &self.past };
-            let found = self.model.linearise(step, &mut self.memory, &mut self.residual, &mut self.factors);
+            let (memory, residual) = (&mut self.memory, &mut self.residual);
+            let found = self.model.linearise(step, memory, residual, &mut self.room, &mut self.factors);
             if found.is_err() {
                 return false;
             }
             self.residual.iter_mut().for_each(|v| *v = -*v);
-            self.model.solve(&mut self.factors, &mut self.residual);
+            self.model.solve(&self.factors, &mut self.residual);
             self.cost.newton_iterations += 1;
             self.cost.factorisations += 1;
             self.cost.solves += 1;

@@ -42,7 +42,13 @@ pub(super) fn orbit_options(o: &mut OrbitFile, faults: &mut Faults) -> OrbitOpti
         SchemeName::Bdf1 => Scheme::Bdf1,
         SchemeName::Bdf2 => Scheme::Bdf2,
     };
-    OrbitOptions { steps, scheme, periodicity_tolerance: tolerance, max_cycles: cycles }
+    OrbitOptions {
+        steps,
+        scheme,
+        periodicity_tolerance: tolerance,
+        max_cycles: cycles,
+        memory_bytes: 1 << 30,
+    }
 }
 
 pub(super) fn points(file: &mut StudyFile, faults: &mut Faults) -> Option<Vec<OperatingPoint>> {

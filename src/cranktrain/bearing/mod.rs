@@ -14,6 +14,7 @@
 //!
 //! Deliberately not here: what the film does inside, where loads come from.
 
+mod fields;
 mod heat;
 mod model;
 mod rescue;
@@ -21,8 +22,9 @@ mod sensitive;
 mod setup;
 mod shapes;
 
+pub use fields::GapSensitivity;
 pub use heat::HeatBalance;
-pub use model::BearingFactors;
+pub use model::{BearingFactors, BearingRoom};
 pub use sensitive::BearingPoint;
 pub use setup::{BearingOutput, BearingParameter, BearingSetup, BearingShape, Tilt};
 

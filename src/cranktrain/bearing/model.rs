@@ -4,7 +4,7 @@ use super::rescue::rescue;
 use super::{BearingOutput, BearingParameter, JournalBearing};
 use crate::cranktrain::Drive;
 use crate::dae::{At, CycleEquations, Dae, InvalidParameters, LinearisedDae, Step};
-use crate::film::{FilmLinear, FilmOutput, up_to_the_switch};
+use crate::film::{FilmCarry, FilmLinear, FilmOutput, up_to_the_switch};
 use crate::math::{Bordered, Singular};
 
 /// Size of a pressure that is zero, Pa.
@@ -202,20 +202,35 @@ impl Dae for JournalBearing {
 /// Factors of one step of a bearing.
 pub struct BearingFactors {
     pub(super) system: Bordered,
+    pub(super) carry: FilmCarry,
+}
+
+/// Workspace of a linearisation of a bearing.
+pub struct BearingRoom {
     linear: FilmLinear,
     shape: Vec<f64>,
 }
 
 impl LinearisedDae for JournalBearing {
     type Factors = BearingFactors;
+    type Room = BearingRoom;
 
     fn factors(&self) -> BearingFactors {
         let (blocks, b) = self.setup.film.shape();
         BearingFactors {
             system: Bordered::new(blocks, b, self.layout.border()),
-            linear: FilmLinear::new(self.layout.n, self.layout.motions),
-            shape: Vec::new(),
+            carry: FilmCarry::new(self.layout.n, self.layout.motions),
         }
+    }
+
+    fn factor_bytes(&self) -> usize {
+        let (blocks, b) = self.setup.film.shape();
+        Bordered::bytes(blocks, b, self.layout.border())
+            + FilmCarry::bytes(self.layout.n, self.layout.motions)
+    }
+
+    fn room(&self) -> BearingRoom {
+        BearingRoom { linear: FilmLinear::new(self.layout.n, self.layout.motions), shape: Vec::new() }
     }
 
     fn linearise(
@@ -223,6 +238,7 @@ impl LinearisedDae for JournalBearing {
         step: Step,
         memory: &mut [f64],
         residual: &mut [f64],
+        room: &mut BearingRoom,
         into: &mut BearingFactors,
     ) -> Result<(), Singular> {
         let (l, n) = (self.layout, self.layout.n);
@@ -232,15 +248,48 @@ impl LinearisedDae for JournalBearing {
         }
         let mut rates = [0.0; 4];
         (0..l.remembered()).for_each(|k| rates[k] = step.alpha * memory[n + k] + step.past[n + k]);
-        let factors = self.assemble(step.t_s, step.z, [rates[0], rates[1]], (step.alpha, step.past), into);
-        memory[..n].copy_from_slice(&into.linear.content);
-        residual[..n].copy_from_slice(&into.linear.residual);
-        self.border_residual(step.t_s, step.z, &rates, &into.linear.loads, &mut residual[n..]);
+        let velocity = [rates[0], rates[1]];
+        let factors = self.assemble(step.t_s, step.z, velocity, (step.alpha, step.past), room, into);
+        memory[..n].copy_from_slice(&room.linear.content);
+        residual[..n].copy_from_slice(&room.linear.residual);
+        self.border_residual(step.t_s, step.z, &rates, &room.linear.loads, &mut residual[n..]);
         factors
     }
 
-    fn solve(&self, factors: &mut BearingFactors, rhs: &mut [f64]) {
+    fn solve(&self, factors: &BearingFactors, rhs: &mut [f64]) {
         factors.system.solve(rhs);
+    }
+
+    fn rate_times(&self, factors: &BearingFactors, rate: &[f64], out: &mut [f64]) {
+        let (l, n, carry) = (self.layout, self.layout.n, &factors.carry);
+        let (sign, row) = l.force_row();
+        for (k, o) in out[..n].iter_mut().enumerate() {
+            *o += carry.by_rate[k] * rate[k];
+        }
+        for a in 0..2 {
+            out[n + row + a] += sign * (0..2).map(|b| carry.damping[a][b] * rate[n + b]).sum::<f64>();
+            if l.mass {
+                out[n + a] += rate[n + a];
+                out[n + row + a] += self.setup.journal_mass_kg * rate[n + 2 + a];
+            }
+        }
+    }
+
+    fn memory_times(&self, factors: &BearingFactors, dz: &[f64], dm: &mut [f64]) {
+        let (l, n, carry) = (self.layout, self.layout.n, &factors.carry);
+        for (k, m) in dm[..n].iter_mut().enumerate() {
+            *m += carry.content_by_unknown[k] * dz[k];
+        }
+        for a in 0..if n > 0 { l.motions } else { 0 } {
+            let column = &carry.content_by_motion[a * n..(a + 1) * n];
+            dm[..n].iter_mut().zip(column).for_each(|(m, c)| *m += c * dz[n + a]);
+        }
+        for a in 0..2 {
+            dm[n + a] += dz[n + a];
+            if l.mass {
+                dm[n + 2 + a] += dz[n + l.motions + a];
+            }
+        }
     }
 
     fn predict(&self, before: &[f64], z: &mut [f64]) {
@@ -282,10 +331,11 @@ impl JournalBearing {
         z: &[f64],
         velocity_m_s: [f64; 2],
         (alpha, past): (f64, &[f64]),
+        room: &mut BearingRoom,
         into: &mut BearingFactors,
     ) -> Result<(), Singular> {
         let (l, n) = (self.layout, self.layout.n);
-        let BearingFactors { system, linear, shape } = into;
+        let (BearingFactors { system, carry }, BearingRoom { linear, shape }) = (into, room);
         let site = self.site(t_s, self.input(t_s, z, velocity_m_s), shape);
         self.setup.film.linearise(&site, self.film_unknowns(z), alpha, past, linear);
         system.columns.fill(0.0);
@@ -298,6 +348,7 @@ impl JournalBearing {
             to.iter_mut().zip(&linear.rows[a * n..(a + 1) * n]).for_each(|(to, from)| *to = sign * from);
         }
         self.fill_corner(t_s, alpha, linear, system);
+        std::mem::swap(carry, &mut linear.carry);
         system.factor(&linear.stencil)
     }
 

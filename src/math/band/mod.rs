@@ -112,6 +112,14 @@ impl CyclicBand {
         }
     }
 
+    /// Size of the factors of such a matrix.
+    pub fn bytes(blocks: usize, b: usize) -> usize {
+        let (rows, stride) = ((blocks - 1) * b, b.next_multiple_of(4));
+        let (padded, left) = (rows.next_multiple_of(4), (b + 4).next_multiple_of(4));
+        let numbers = padded * (left + stride + 5) + 2 * padded * stride + stride * stride + 2 * b;
+        numbers * size_of::<f64>() + padded / 4 * size_of::<Group>() + blocks * size_of::<Census>()
+    }
+
     /// Number of unknowns.
     pub fn len(&self) -> usize {
         self.blocks * self.b
