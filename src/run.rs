@@ -34,6 +34,13 @@ impl Cancel {
     }
 }
 
+/// Sets the number of threads that all computations of this process share; to be called before the first of them. Every
+/// sum is taken in one order, so results are the same bits for any number of threads.
+pub fn use_threads(count: std::num::NonZeroUsize) {
+    // Fails only if the threads are there already, which keeps the number of cores: harmless.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(count.get()).build_global();
+}
+
 /// News of a running computation.
 #[derive(Debug, Clone, Serialize)]
 #[serde(tag = "event", rename_all = "kebab-case")]

@@ -199,6 +199,9 @@ dimensions! {
         &[("1/GPa", 1e-9, 0.0), ("1/MPa", 1e-6, 0.0), ("1/Pa", 1.0, 0.0)];
     /// A shear rate.
     ShearRateKind, ShearRate, "a shear rate", "1e6 1/s", &[("1/s", 1.0, 0.0)];
+    /// An amount of memory.
+    InformationKind, Information, "an amount of memory", "1 GB",
+        &[("GB", 1e9, 0.0), ("MB", 1e6, 0.0), ("kB", 1e3, 0.0), ("B", 1.0, 0.0)];
     /// A time.
     TimeKind, Time, "a time", "2 us", &[("s", 1.0, 0.0), ("ms", 1e-3, 0.0), ("us", 1e-6, 0.0)];
 }

@@ -10,6 +10,7 @@ mod gradients;
 mod literature;
 mod main_job;
 mod orbits;
+mod recording;
 mod study_physics;
 
 #[global_allocator]

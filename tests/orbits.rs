@@ -74,7 +74,7 @@ fn film_force_balances_the_load_at_every_step() {
         let orbit = solve(&bearing, 360, Scheme::Bdf2);
         let (rates, mut r) = (orbit.rates(&bearing), vec![0.0; bearing.states()]);
         for (n, rate) in rates.iter().enumerate() {
-            bearing.residual(At { t_s: orbit.time_s(n), z: orbit.state(n, 0), rate }, &mut r);
+            bearing.residual(At { t_s: orbit.time_s(n), z: orbit.state(n), rate }, &mut r);
             let [x, y] = bearing.drive(orbit.time_s(n)).load_n;
             let force = &r[bearing.film().unknowns()..];
             assert!(force[0].hypot(force[1]) < 1e-10 * x.hypot(y), "step {n}: {force:?}");
@@ -196,7 +196,7 @@ fn oil_is_conserved_at_every_step_and_over_the_cycle() {
         let orbit = solve(&bearing, 360, Scheme::Bdf2);
         let (mut supply, mut side, mut void) = (0.0, 0.0, 0);
         for (n, rate) in orbit.rates(&bearing).iter().enumerate() {
-            let (z, mut room) = (orbit.state(n, 0), Vec::new());
+            let (z, mut room) = (orbit.state(n), Vec::new());
             let at = At { t_s: orbit.time_s(n), z, rate };
             let site = bearing.film_site(at, &mut room);
             let q = bearing.film_unknowns(z);

@@ -44,6 +44,9 @@ pub fn exit_code(outcome: Outcome) -> u8 {
 3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 8 rows of a characteristic are missing, 130 cancelled."
 )]
 struct Arguments {
+    /// Threads to use [default: one per core]. The numbers do not depend on it.
+    #[arg(long, global = true, value_name = "COUNT")]
+    threads: Option<std::num::NonZeroUsize>,
     #[command(subcommand)]
     command: Command,
 }
@@ -132,6 +135,9 @@ impl EngineChoice {
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Some(count) = arguments.threads {
+        crate::run::use_threads(count);
+    }
     let code = match &arguments.command {
         Command::Run(a) => commands::run(a),
         Command::Check(a) => commands::check(a),

@@ -50,12 +50,14 @@ pub(super) struct Partial {
 }
 
 impl<const N: usize> Sides<'_, N> {
+    #[inline(always)]
     fn resistances(&self, around: bool) -> [f64; 2] {
         let of = |c: &Cell<N>| if around { c.around.v } else { c.across.v };
         [of(self.a), self.b.map_or(0.0, of)]
     }
 
     /// Pressure flow `G drop` alone.
+    #[inline(always)]
     fn pressure_flow(&self, around: bool, s: &Scalars) -> Partial {
         let [ra, rb] = self.resistances(around);
         let (sum, aspect) = (ra + rb, if around { s.dz / s.dx } else { s.dx / s.dz });
@@ -73,6 +75,7 @@ impl<const N: usize> Sides<'_, N> {
     }
 
     /// Mean of a thickness, weighted with the resistances, and its derivatives by thickness and resistance.
+    #[inline(always)]
     fn mean(&self, thickness: impl Fn(&Cell<N>) -> Jet<N>) -> (f64, [f64; 2], [f64; 2]) {
         let [ra, rb] = self.resistances(true);
         let (ta, tb) = (thickness(self.a).v, self.b.map_or(0.0, |b| thickness(b).v));
@@ -82,6 +85,7 @@ impl<const N: usize> Sides<'_, N> {
     }
 
     /// Flow from `a` to `b`.
+    #[inline(always)]
     pub fn flow(&self, around: bool, s: &Scalars) -> Partial {
         let mut j = self.pressure_flow(around, s);
         if around {
@@ -98,6 +102,7 @@ impl<const N: usize> Sides<'_, N> {
     }
 
     /// Power of the pressure gradient on the journal's surface, `-U/2 W dz drop`.
+    #[inline(always)]
     pub fn shear_power(&self, s: &Scalars) -> Partial {
         let (w, by_w, by_r) = self.mean(|c| c.stress);
         let c = -s.speed / 2.0 * s.dz * self.drop;
@@ -114,6 +119,7 @@ impl<const N: usize> Sides<'_, N> {
     }
 
     /// Power dissipated by the pressure flow, `G drop^2`.
+    #[inline(always)]
     pub fn dissipation(&self, around: bool, s: &Scalars) -> Partial {
         let flow = self.pressure_flow(around, s);
         Partial {

@@ -1,6 +1,6 @@
 //! The film linearised for Newton's method: residual, stencil, columns by the journal's motion, rows of the loads.
 //!
-//! With the content's rate `alpha c + past`, the residual depends on `q` and the motion `x` directly and through the
+//! With the content's rate `alpha c + past`, the residual (that of [`Reynolds::balance`]) depends on `q` and the motion `x` directly and through the
 //! content. Nothing is allocated once a [`FilmLinear`] has its size.
 
 use super::cavitation::Cavitation;
@@ -47,7 +47,6 @@ pub struct FilmLinear {
     /// How contents change and what their rates do.
     pub carry: FilmCarry,
     gap: Vec<f64>,
-    rate: Vec<f64>,
     cells: Vec<Cell<2>>,
     cover: Cover,
     covered: bool,
@@ -85,7 +84,6 @@ impl FilmLinear {
             corner: [[0.0; 4]; 4],
             carry: FilmCarry::new(n, motions),
             gap: Vec::with_capacity(n),
-            rate: vec![0.0; n],
             cells: Vec::with_capacity(n),
             cover: Cover::default(),
             covered: false,
@@ -109,11 +107,10 @@ pub(super) fn linearise(
     }
     for (k, cell) in into.cells.iter().enumerate() {
         into.content[k] = film.cavitation.split(q[k]).fill * cell.content.v;
-        into.rate[k] = alpha * into.content[k] + past.get(k).copied().unwrap_or(0.0);
+        let rate = alpha * into.content[k] + past.get(k).copied().unwrap_or(0.0);
+        into.residual[k] = rate * s.dx * s.dz;
     }
-    film.balance(&into.cells, q, &into.rate, &s, &mut into.residual);
     into.stencil.clear();
-    into.columns.fill(0.0);
     let mut work = Assembly { film, site, q, s: &s, into: &mut *into };
     work.storage(alpha);
     film.for_faces(|face| work.face(face));
@@ -156,7 +153,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// Flow through a face: into the stencil and the columns of its two cells.
+    /// Flow through a face: into the balances, the stencil and the columns of its two cells.
+    #[inline(always)]
     fn face(&mut self, face: Face) {
         let film = self.film;
         let flow = film.sides(&face, &self.into.cells, self.q, self.s.speed).flow(face.around, self.s);
@@ -174,6 +172,7 @@ impl Assembly<'_> {
         let (qa, ha) = by(face.a, 0, 1.0);
         let other = face.b.map(|b| (b, by(b, 1, -1.0)));
         let (a, n) = (face.a, self.q.len());
+        self.into.residual[a] += flow.value;
         self.into.stencil.diagonal[a] += qa;
         let near = self.modes(a);
         let far = other.map(|(b, (_, hb))| self.modes(b).map(|m| m * hb));
@@ -185,6 +184,7 @@ impl Assembly<'_> {
             }
         }
         if let Some((b, (qb, _))) = other {
+            self.into.residual[b] -= flow.value;
             let stencil = &mut self.into.stencil;
             stencil.diagonal[b] -= qb;
             if face.around {

@@ -13,10 +13,10 @@
 //! on to their fixed point (GMRES over sweeps that only solve), and a last sweep adds the share of what was missing. That
 //! closes the period exactly. Unlike a one-cycle adjoint on a frozen start state, this sees the start state move with the design.
 
-use super::chain::{BLOCK, CLOSED, COLUMNS, Carrier, Chain, Way};
+use super::chain::{CLOSED, COLUMNS, Carrier, Chain, Way};
 use super::{GradientError, GradientTable};
 use crate::dae::{Cotangent, SensitiveDae};
-use crate::orbit::{Heads, Orbit, OrbitOptions, Quantity};
+use crate::orbit::{BLOCK, Heads, Orbit, OrbitOptions, Quantity};
 use crate::run::Cancel;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -160,6 +160,7 @@ impl<'a, M: SensitiveDae> Backward<'a, M> {
             if !forced && self.back.heads.size() <= CLOSED * self.largest {
                 break;
             }
+            self.chain.look(block.clone())?;
             self.chain.ready(block.clone())?;
             self.prepare(block.clone(), forced);
             self.march(block.clone(), forced);

@@ -7,13 +7,12 @@
 use super::GradientError;
 use crate::dae::{At, SensitiveDae};
 use crate::math::{FixedPoints, fixed_points};
-use crate::orbit::{Heads, Orbit, OrbitOptions};
+use crate::orbit::OrbitError;
+use crate::orbit::{BLOCK, Heads, Orbit, OrbitOptions, Recording, Window};
 use crate::run::{Cancel, Cost};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Steps that are prepared together.
-pub(super) const BLOCK: usize = 32;
 /// Columns that are carried together.
 pub(super) const COLUMNS: usize = 8;
 /// What a fixed point may leave of its right-hand side; memory below this share of its start counts as gone.
@@ -35,12 +34,10 @@ pub(super) enum Way {
 impl Way {
     /// The blocks of a cycle in order.
     pub fn blocks(self, count: usize) -> Vec<Range<usize>> {
-        let mut all: Vec<Range<usize>> =
-            (0..count).step_by(BLOCK).map(|lo| lo..(lo + BLOCK).min(count)).collect();
-        if self == Self::Backward {
-            all.reverse();
+        match self {
+            Self::Forward => Orbit::blocks(count).collect(),
+            Self::Backward => Orbit::blocks(count).rev().collect(),
         }
-        all
     }
 
     /// The steps of a block in order.
@@ -61,12 +58,14 @@ pub(super) trait Carrier<M: SensitiveDae>: Send {
 pub(super) struct Chain<'a, M: SensitiveDae> {
     pub model: &'a M,
     pub orbit: &'a Orbit,
-    pub rates: Vec<Vec<f64>>,
+    /// The block at hand.
+    window: Option<Window<'a>>,
     /// Factors of all steps, or of one block.
     factors: Vec<M::Factors>,
     kept: bool,
-    /// Steps whose factors are there: all of `done` if they are kept, else the block at hand.
+    /// Steps whose factors were made, if they are kept.
     done: Vec<bool>,
+    /// The block whose factors are there, if they are not.
     block: Range<usize>,
     pub cost: Cost,
     cancel: &'a Cancel,
@@ -75,12 +74,12 @@ pub(super) struct Chain<'a, M: SensitiveDae> {
 impl<'a, M: SensitiveDae> Chain<'a, M> {
     pub fn new(model: &'a M, orbit: &'a Orbit, options: &OrbitOptions, cancel: &'a Cancel) -> Self {
         let count = orbit.steps();
-        let kept = count * model.factor_bytes() <= options.memory_bytes;
+        let kept = Recording::of(model, options) == Recording::Factors;
         let room = if kept { count } else { BLOCK.min(count) };
         Self {
             model,
             orbit,
-            rates: orbit.rates(model),
+            window: None,
             factors: (0..room).map(|_| model.factors()).collect(),
             kept,
             done: vec![false; count],
@@ -90,8 +89,19 @@ impl<'a, M: SensitiveDae> Chain<'a, M> {
         }
     }
 
+    /// Step `n` of the block looked at last.
     pub fn at(&self, n: usize) -> At<'_> {
-        At { t_s: self.orbit.time_s(n), z: self.orbit.state(n, 0), rate: &self.rates[n] }
+        self.window.as_ref().expect("a block is looked at before its steps").at(n)
+    }
+
+    /// Looks at the states of a block.
+    pub fn look(&mut self, block: Range<usize>) -> Result<(), GradientError> {
+        if self.window.as_ref().is_none_or(|w| w.steps() != block) {
+            let share = block.start as f64 / self.orbit.steps() as f64;
+            let lost = || OrbitError::StepFailed { at_share: share, cycle: 1 };
+            self.window = Some(self.orbit.window(self.model, block).ok_or_else(lost)?);
+        }
+        Ok(())
     }
 
     /// Weights of the newest and the two older memories in the rate, 1/s.
@@ -110,15 +120,13 @@ impl<'a, M: SensitiveDae> Chain<'a, M> {
         if there {
             return Ok(());
         }
-        let (model, orbit, rates, alpha) = (self.model, self.orbit, &self.rates, self.weights()[0]);
+        self.look(block.clone())?;
+        let (model, alpha) = (self.model, self.weights()[0]);
+        let Some(window) = &self.window else { return Ok(()) };
         let first = if self.kept { block.start } else { 0 };
         self.factors[first..first + block.len()].par_iter_mut().enumerate().try_for_each_init(
             || model.room(),
-            |room, (k, into)| {
-                let n = block.start + k;
-                let at = At { t_s: orbit.time_s(n), z: orbit.state(n, 0), rate: &rates[n] };
-                model.factor(at, alpha, room, into)
-            },
+            |room, (k, into)| model.factor(window.at(block.start + k), alpha, room, into),
         )?;
         self.cost.factorisations += block.len() as u64;
         self.done[block.clone()].fill(true);

@@ -4,6 +4,7 @@ use super::{EngineName, GradientEngine, GradientError, GradientTable};
 use crate::dae::SensitiveDae;
 use crate::orbit::{Orbit, OrbitOptions, Quantity, settle};
 use crate::run::{Cancel, Cost};
+use rayon::prelude::*;
 
 /// Share of the perturbation that may be left unsettled.
 const REST: f64 = 1e-7;
@@ -34,6 +35,13 @@ pub struct FiniteDifference {
     pub difference: Difference,
     /// Relative perturbation.
     pub perturbation: f64,
+}
+
+/// A settled neighbour.
+struct Neighbour {
+    values: Vec<f64>,
+    cycles: f64,
+    cost: Cost,
 }
 
 impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
@@ -71,23 +79,33 @@ impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
             return Ok(table);
         }
         let here: Vec<f64> = of.iter().map(|q| at.value(q)).collect();
-        for j in 0..varied {
+        let settled = |j: usize, by: f64| -> Result<Neighbour, GradientError> {
+            let mut shifted = p.to_vec();
+            shifted[j] += by;
+            let orbit = settle(&model.with_parameters(&shifted)?, options, Some(at), cancel)?;
+            let values = of.iter().map(|q| orbit.value(q)).collect();
+            Ok(Neighbour { values, cycles: orbit.cycles, cost: orbit.cost })
+        };
+        // Each neighbour starts from the same cycle, so their order and number of threads change nothing.
+        let columns: Result<Vec<[Option<Neighbour>; 2]>, GradientError> = (0..varied)
+            .into_par_iter()
+            .map(|j| {
+                let step = self.perturbation * model.parameter_scale(j);
+                let above = (self.difference != Difference::Backward).then(|| settled(j, step));
+                let below = (self.difference != Difference::Forward).then(|| settled(j, -step));
+                Ok([above.transpose()?, below.transpose()?])
+            })
+            .collect();
+        for (j, [above, below]) in columns?.into_iter().enumerate() {
             let step = self.perturbation * model.parameter_scale(j);
-            let mut settled = |sign: f64| -> Result<Vec<f64>, GradientError> {
-                let mut shifted = p.to_vec();
-                shifted[j] += sign * step;
-                let orbit = settle(&model.with_parameters(&shifted)?, options, Some(at), cancel)?;
-                table.cost += orbit.cost;
-                table.sweeps += orbit.cycles;
-                Ok(of.iter().map(|q| orbit.value(q)).collect())
-            };
-            let (plus, minus, width) = match self.difference {
-                Difference::Forward => (settled(1.0)?, here.clone(), step),
-                Difference::Backward => (here.clone(), settled(-1.0)?, step),
-                Difference::Central => (settled(1.0)?, settled(-1.0)?, 2.0 * step),
-            };
-            for (row, (plus, minus)) in table.rows.iter_mut().zip(plus.iter().zip(&minus)) {
-                row[j] = (plus - minus) / width;
+            let width = if self.difference == Difference::Central { 2.0 * step } else { step };
+            let value = |side: &Option<Neighbour>, k: usize| side.as_ref().map_or(here[k], |n| n.values[k]);
+            for (k, row) in table.rows.iter_mut().enumerate() {
+                row[j] = (value(&above, k) - value(&below, k)) / width;
+            }
+            for neighbour in [above, below].into_iter().flatten() {
+                table.cost += neighbour.cost;
+                table.sweeps += neighbour.cycles;
             }
         }
         Ok(table)

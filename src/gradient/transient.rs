@@ -11,10 +11,10 @@
 //! The first sweep starts from `d = 0` before the cycle. The memory it leaves at the end is carried on to its fixed point
 //! (GMRES over sweeps that only solve), and a last sweep adds the response to what was missing.
 
-use super::chain::{BLOCK, CLOSED, COLUMNS, Carrier, Chain, Way};
+use super::chain::{CLOSED, COLUMNS, Carrier, Chain, Way};
 use super::{GradientError, GradientTable};
 use crate::dae::{At, Direction, SensitiveDae};
-use crate::orbit::{Carry, Heads, Orbit, OrbitOptions, Quantity};
+use crate::orbit::{BLOCK, Carry, Heads, Orbit, OrbitOptions, Quantity};
 use crate::run::Cancel;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -125,6 +125,7 @@ impl<'a, M: SensitiveDae> Forward<'a, M> {
             if !self.groups.iter().any(open) {
                 break;
             }
+            self.chain.look(block.clone())?;
             self.chain.ready(block.clone())?;
             let Self { chain, of, weights, points, groups } = self;
             let (chain_now, of, weights) = (&*chain, *of, &*weights);

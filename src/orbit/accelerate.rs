@@ -14,7 +14,7 @@
 //! Most bearings forget all but a hundredth of their memory, or less, in a period: there marching is hard to beat. The
 //! march therefore watches how fast passes draw together and corrects only if many more would be needed.
 
-use super::OrbitOptions;
+use super::Recording;
 use super::carry::Carry;
 use super::march::March;
 use super::step::Taken;
@@ -73,9 +73,8 @@ impl<M: LinearisedDae> Default for Accelerator<M> {
 }
 
 impl<M: LinearisedDae> Accelerator<M> {
-    pub fn new(model: &M, options: &OrbitOptions) -> Self {
-        let allowed = options.steps * model.factor_bytes() <= options.memory_bytes;
-        Self { allowed, ..Self::default() }
+    pub fn new(recording: Recording) -> Self {
+        Self { allowed: recording == Recording::Factors, ..Self::default() }
     }
 
     /// Whether a whole pass lies between the last correction and the step that will be the `taken`-th.

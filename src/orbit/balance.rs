@@ -88,7 +88,8 @@ pub(super) fn settle_balanced<M: LinearisedDae>(
 fn continued<M: LinearisedDae>(model: &M, now: &Orbit, older: Option<&Orbit>, share: f64) -> Orbit {
     let mut next = now.clone();
     let Some(older) = older.filter(|_| share != 0.0 && share.abs() <= 1.0) else { return next };
-    for (z, old) in next.states.iter_mut().zip(&older.states) {
+    let kept = next.states.iter_mut().zip(&older.states).filter(|(z, old)| !z.is_empty() && !old.is_empty());
+    for (z, old) in kept {
         let change: Vec<f64> = z.iter().zip(old).map(|(z, old)| share * (z - old)).collect();
         let admissible = model.admissible(z, &change);
         model.advance(z, &change, admissible);

@@ -2,8 +2,8 @@
 
 use super::accelerate::Accelerator;
 use super::step::{From, Stepper, Taken};
-use super::{Orbit, OrbitError, OrbitOptions};
-use crate::dae::{At, LinearisedDae};
+use super::{Orbit, OrbitError, OrbitOptions, Recording};
+use crate::dae::LinearisedDae;
 use crate::run::{Cancel, Cost};
 
 /// Steps between two looks at the cancel flag.
@@ -28,19 +28,25 @@ pub(super) struct March<'m, M: LinearisedDae> {
     /// Steps taken when the last one was walked instead of solved.
     walked: Option<usize>,
     accelerator: Accelerator<M>,
+    recording: Recording,
     periodicity: f64,
 }
 
 impl<'m, M: LinearisedDae> March<'m, M> {
     pub fn new(model: &'m M, options: &OrbitOptions, start: Option<&Orbit>) -> Self {
         let (count, dt_s) = (options.steps, model.period_s() / options.steps as f64);
-        let similar = start.filter(|o| o.steps() == count && o.states[0].len() == model.states());
-        let (states, warm) = match similar {
-            Some(orbit) if orbit.states.iter().all(|z| model.contains(z)) => (orbit.states.clone(), true),
+        let recording = Recording::of(model, options);
+        let kept = |z: &Vec<f64>| z.is_empty() || model.contains(z);
+        let similar = start.filter(|o| o.steps() == count && o.states[count - 1].len() == model.states());
+        let (mut states, warm) = match similar {
+            Some(orbit) if orbit.states.iter().all(kept) => (orbit.states.clone(), true),
             _ => (vec![model.cold_start(); count], false),
         };
-        let mut memories = vec![vec![0.0; model.memories()]; count];
+        let dropped = (0..count).filter(|n| !recording.keeps(*n, count));
+        dropped.for_each(|n| states[n] = Vec::new());
+        let mut memories = vec![Vec::new(); count];
         for n in count - 2..count {
+            memories[n] = vec![0.0; model.memories()];
             model.memory(n as f64 * dt_s, &states[n], &mut memories[n]);
         }
         let last = [memories[count - 1].clone(), memories[count - 2].clone()];
@@ -56,7 +62,8 @@ impl<'m, M: LinearisedDae> March<'m, M> {
             warm,
             taken: 0,
             walked: None,
-            accelerator: Accelerator::new(model, options),
+            accelerator: Accelerator::new(recording),
+            recording,
             periodicity: f64::INFINITY,
         }
     }
@@ -118,12 +125,26 @@ impl<'m, M: LinearisedDae> March<'m, M> {
             self.walked = Some(self.taken);
         }
         self.accelerator.record(n, taken, &mut self.stepper.factors);
-        self.replaced.rotate_right(1);
-        self.replaced[0].copy_from_slice(&self.memories[n]);
-        self.model.memory(t_s, &self.states[n], &mut self.memories[n]);
         self.last.rotate_right(1);
-        self.last[0].copy_from_slice(&self.memories[n]);
-        Ok(if self.taken > count { self.difference(0) } else { f64::INFINITY })
+        self.model.memory(t_s, &self.states[n], &mut self.last[0]);
+        self.remember(n);
+        let known = self.taken > count && !self.replaced[0].is_empty();
+        Ok(if known { self.difference(0) } else { f64::INFINITY })
+    }
+
+    /// Replaces the memory of step `n` and drops what is not kept.
+    fn remember(&mut self, n: usize) {
+        let count = self.options.steps;
+        self.replaced.rotate_right(1);
+        self.replaced[0] = std::mem::take(&mut self.memories[n]);
+        if self.recording.keeps(n, count) {
+            self.memories[n].clone_from(&self.last[0]);
+        }
+        // The last two steps are the next one's past.
+        let old = (n + count - 2) % count;
+        if !self.recording.keeps(old, count) {
+            self.states[old] = Vec::new();
+        }
     }
 
     /// How far the memory of the last step (or the one before) is from that of the pass before.
@@ -135,11 +156,14 @@ impl<'m, M: LinearisedDae> March<'m, M> {
     /// The state of the pass before, or the last step continued.
     fn guess(&self, n: usize) -> Vec<f64> {
         let count = self.options.steps;
-        if self.warm || self.taken > count {
+        if (self.warm || self.taken > count) && !self.states[n].is_empty() {
             return self.states[n].clone();
         }
         let mut z = self.states[(n + count - 1) % count].clone();
-        self.model.predict(&self.states[(n + count - 2) % count], &mut z);
+        let before = &self.states[(n + count - 2) % count];
+        if !before.is_empty() {
+            self.model.predict(before, &mut z);
+        }
         z
     }
 
@@ -158,13 +182,14 @@ impl<'m, M: LinearisedDae> March<'m, M> {
         back
     }
 
-    pub fn finish(self) -> Orbit {
+    /// The cycle with its outputs; a step that was dropped and cannot be solved again counts as failed.
+    pub fn finish(self) -> Result<Orbit, OrbitError> {
         let count = self.options.steps;
-        let cost = Cost { simulations: 1, ..self.stepper.cost };
         let mut orbit = Orbit {
             scheme: self.options.scheme,
             dt_s: self.dt_s,
             parameters: self.model.parameters().to_vec(),
+            recording: self.recording,
             states: self.states,
             outputs: Vec::with_capacity(count),
             periodicity: self.periodicity,
@@ -172,14 +197,24 @@ impl<'m, M: LinearisedDae> March<'m, M> {
             response: Vec::new(),
             cycles: self.taken as f64 / count as f64,
             corrections: self.accelerator.corrections,
-            cost,
+            cost: Cost { simulations: 1, ..self.stepper.cost },
         };
-        let rates = orbit.rates(self.model);
-        for (n, rate) in rates.iter().enumerate() {
+        let mut keeps = (0..count).map(|n| self.recording.keeps(n, count));
+        orbit.states.iter_mut().for_each(|z| {
+            if !keeps.next().unwrap_or(true) {
+                *z = Vec::new();
+            }
+        });
+        let mut outputs = Vec::with_capacity(count);
+        let shown = orbit.for_each(self.model, |_, at| {
             let mut y = vec![0.0; self.model.outputs()];
-            self.model.output(At { t_s: orbit.time_s(n), z: &orbit.states[n], rate }, &mut y);
-            orbit.outputs.push(y);
+            self.model.output(at, &mut y);
+            outputs.push(y);
+        });
+        if !shown {
+            return Err(OrbitError::StepFailed { at_share: outputs.len() as f64 / count as f64, cycle: 1 });
         }
-        orbit
+        orbit.outputs = outputs;
+        Ok(orbit)
     }
 }

@@ -20,10 +20,13 @@ mod march;
 mod quantity;
 mod settle;
 mod step;
+mod window;
 
 pub(crate) use carry::{Carry, Heads};
 pub use quantity::{Quantity, Reduction};
 pub use settle::{Orbit, OrbitError, OrbitOptions, settle};
+pub(crate) use window::BLOCK;
+pub use window::{Recording, Window};
 
 /// Backward difference formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use super::balance::settle_balanced;
 use super::march::March;
-use super::{Quantity, Scheme};
+use super::{Quantity, Recording, Scheme};
 use crate::dae::{Dae, InvalidParameters, LinearisedDae};
 use crate::run::{Cancel, Cancelled, Cost};
 use thiserror::Error;
@@ -18,8 +18,8 @@ pub struct OrbitOptions {
     pub periodicity_tolerance: f64,
     /// Cycles after which settling is given up.
     pub max_cycles: usize,
-    /// Memory that the factors of a cycle may take, bytes. If there is room for them, slow settling is accelerated and
-    /// gradients factorise each step once; without, steps are factorised again whenever they are needed.
+    /// Memory that the recording of a cycle may take, bytes. With room for factors, slow settling is accelerated and
+    /// gradients factorise each step once; see [`Recording`] for what happens with less.
     pub memory_bytes: usize,
 }
 
@@ -71,7 +71,9 @@ pub struct Orbit {
     pub dt_s: f64,
     /// Parameters of the model that was settled, its cycle unknowns at the end.
     pub parameters: Vec<f64>,
-    /// States at `t = n dt`.
+    /// What is kept of it.
+    pub recording: Recording,
+    /// States at `t = n dt`; empty where they are not kept.
     pub states: Vec<Vec<f64>>,
     /// Outputs at the same times.
     pub outputs: Vec<Vec<f64>>,
@@ -100,26 +102,9 @@ impl Orbit {
         n as f64 * self.dt_s
     }
 
-    /// State `back` steps before step `n`, around the cycle.
-    pub fn state(&self, n: usize, back: usize) -> &[f64] {
-        let count = self.states.len();
-        &self.states[(n + count - back) % count]
-    }
-
-    /// Rates of the memory at all steps.
-    pub fn rates(&self, model: &impl Dae) -> Vec<Vec<f64>> {
-        let (count, a) = (self.steps(), self.scheme.rates(self.dt_s));
-        let memory = |n: usize| {
-            let mut m = vec![0.0; model.memories()];
-            model.memory(self.time_s(n), &self.states[n], &mut m);
-            m
-        };
-        let all: Vec<Vec<f64>> = (0..count).map(memory).collect();
-        let rate = |n: usize| {
-            let [new, last, before] = [0, 1, 2].map(|back| &all[(n + count - back) % count]);
-            (0..new.len()).map(|i| a[0] * new[i] + a[1] * last[i] + a[2] * before[i]).collect()
-        };
-        (0..count).map(rate).collect()
+    /// State of step `n`; empty if it is not kept.
+    pub fn state(&self, n: usize) -> &[f64] {
+        &self.states[n]
     }
 
     /// Value of a quantity.
@@ -161,5 +146,5 @@ pub(super) fn settle_fixed<M: LinearisedDae>(
 ) -> Result<Orbit, OrbitError> {
     let mut march = March::new(model, options, start);
     march.run(cancel)?;
-    Ok(march.finish())
+    march.finish()
 }

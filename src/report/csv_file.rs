@@ -1,4 +1,5 @@
-//! `orbit.csv`: the working cycles at the design found, one row per bearing, operating point and step.
+//! `orbit.csv`: the working cycles at the design found, one row per bearing, operating point and step; `sensitivity.csv`: the
+//! derivative of the mean loss by the local gap, one row per bearing, operating point, surface and cell.
 
 use super::Findings;
 
@@ -41,6 +42,30 @@ pub fn orbit_csv(findings: &Findings) -> Result<String, csv::Error> {
             ];
             let text = numbers.iter().map(|v| format!("{v:.9e}"));
             writer.write_record([c.bearing.clone(), c.operating_point.clone()].into_iter().chain(text))?;
+        }
+    }
+    let bytes = writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// The sensitivity maps as text.
+pub fn sensitivity_csv(findings: &Findings) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let head =
+        ["bearing", "operating_point", "surface", "angle_deg", "axial_mm", "loss_per_gap_w_per_um_cm2"];
+    writer.write_record(head)?;
+    for c in &findings.curves {
+        let Some(s) = &c.sensitivity else { continue };
+        for (surface, field) in [("shell", &s.shell_w_per_um_cm2), ("journal", &s.journal_w_per_um_cm2)] {
+            for (i, row) in field.iter().enumerate() {
+                let angle = 360.0 * i as f64 / field.len() as f64;
+                for (j, value) in row.iter().enumerate() {
+                    let axial = c.width_mm * ((j as f64 + 0.5) / row.len() as f64 - 0.5);
+                    let numbers = [format!("{angle:.4}"), format!("{axial:.4}"), format!("{value:.9e}")];
+                    let labels = [c.bearing.clone(), c.operating_point.clone(), surface.to_owned()];
+                    writer.write_record(labels.into_iter().chain(numbers))?;
+                }
+            }
         }
     }
     let bytes = writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?;

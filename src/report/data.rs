@@ -2,6 +2,7 @@
 
 use crate::gradient::{EngineName, TaylorRow};
 use crate::optimise::Outcome;
+use crate::orbit::Recording;
 use crate::run::{Cost, IterationEvent};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -201,6 +202,34 @@ pub struct GradientReport {
     pub closure: f64,
     /// Cells at which the film has a kink, over all steps.
     pub weakly_active_cells: usize,
+    /// Where a micrometre of gap matters, one entry per bearing and operating point with a film of cells.
+    pub gap_sensitivity: Vec<GapSensitivityReport>,
+}
+
+/// Derivative of the mean friction loss by the local gap, in short; the maps stand in `sensitivity.csv`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GapSensitivityReport {
+    /// Bearing.
+    pub bearing: String,
+    /// Operating point.
+    pub operating_point: String,
+    /// Change of the loss if the gap widens everywhere, W/um.
+    pub everywhere_w_per_um: f64,
+    /// Where on the shell a wider gap saves most.
+    pub saves_most: MapExtremum,
+    /// Where on the shell a wider gap costs most.
+    pub costs_most: MapExtremum,
+}
+
+/// A place on the shell and the value of the map there.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MapExtremum {
+    /// Change of the loss per gap and area, W/(um cm2).
+    pub w_per_um_cm2: f64,
+    /// Angle around the shell, degrees.
+    pub angle_deg: f64,
+    /// Axial position from the middle of the bearing, mm.
+    pub axial_mm: f64,
 }
 
 /// An extreme value and where in the cycle it occurs.
@@ -254,6 +283,12 @@ pub struct OrbitReport {
     pub cycles: f64,
     /// Difference of the last two passes, relative to the clearance.
     pub periodicity: f64,
+    /// Corrections by Newton's method on the period map while settling.
+    pub corrections: usize,
+    /// What is kept of the cycle for the backward sweep.
+    pub recording: Recording,
+    /// Memory it takes per step, bytes.
+    pub bytes_per_step: usize,
 }
 
 /// Work done.
@@ -335,8 +370,22 @@ pub struct Curves {
     pub pressure_map_mpa: Vec<Vec<f64>>,
     /// Share of the gap filled with oil at the same instant; empty unless the film keeps account of its oil.
     pub fill_map: Vec<Vec<f64>>,
+    /// Derivative of the mean loss by the local gap; none for a film without cells.
+    pub sensitivity: Option<SensitivityMaps>,
     /// Width of the bearing, mm.
     pub width_mm: f64,
+    /// Diameter of the bearing, mm.
+    pub diameter_mm: f64,
+}
+
+/// Derivative of the mean friction loss by the local gap, W per um and cm2 of surface: rows around, columns from edge to
+/// edge. Where it is negative, a wider gap saves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SensitivityMaps {
+    /// On the shell.
+    pub shell_w_per_um_cm2: Vec<Vec<f64>>,
+    /// On the journal, in a frame that turns with it.
+    pub journal_w_per_um_cm2: Vec<Vec<f64>>,
 }
 
 /// Contact pressure below which pages do not speak of contact, MPa.

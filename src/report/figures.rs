@@ -9,8 +9,6 @@ use kuva::prelude::*;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Columns of the pressure map at most; more would only make the page heavy.
-const MAP_COLUMNS: usize = 120;
 /// Room of a crank angle beside the orbit, in eccentricity ratios.
 const MARK_WIDTH: f64 = 0.22;
 /// The same upwards.
@@ -292,73 +290,6 @@ fn marks(c: &Curves) -> Plot {
         .with_size(3.0)
         .with_labels(labels.iter().map(String::as_str))
         .into()
-}
-
-/// Film pressure over the unwrapped bearing at the instant of its maximum.
-pub fn pressure_map(c: &Curves, name: &str) -> String {
-    let top = c.pressure_map_mpa.iter().flatten().copied().fold(0.0f64, f64::max);
-    map(c, &c.pressure_map_mpa, top, "film pressure [MPa]", name)
-}
-
-/// Fill of the gap at the same instant; none for a film that does not know it.
-pub fn fill_map(c: &Curves, name: &str) -> Option<String> {
-    (!c.fill_map.is_empty()).then(|| map(c, &c.fill_map, 1.0, "filled share of the gap", name))
-}
-
-/// Where a picture of the unwrapped bearing is cut: its first row and the angle there. Not where the pressure is:
-/// opposite to 0 if the peak is near 0.
-fn cut(pressure: &[Vec<f64>]) -> (usize, f64) {
-    let around = pressure.len();
-    let peak = |i: &usize| pressure[*i].iter().copied().fold(0.0, f64::max);
-    let highest = (0..around).max_by(|a, b| peak(a).total_cmp(&peak(b))).unwrap_or(0);
-    let near_zero = highest < around / 4 || highest > 3 * around / 4;
-    if near_zero { (around / 2, -180.0) } else { (0, 0.0) }
-}
-
-/// Colours of a grid from 0 to `top`; kuva spreads the map it is given over the values that occur.
-fn colours(grid: &[Vec<f64>], top: f64) -> ColorMap {
-    let every = || grid.iter().flatten().copied();
-    let low = every().fold(f64::INFINITY, f64::min);
-    let span = every().fold(f64::NEG_INFINITY, f64::max) - low;
-    ColorMap::Custom(Arc::new(move |v| ColorMap::Cividis.map(((low + v * span) / top).clamp(0.0, 1.0))))
-}
-
-/// A field over the unwrapped bearing, rows around and columns across, in colours from 0 to `top`.
-fn map(c: &Curves, field: &[Vec<f64>], top: f64, label: &str, name: &str) -> String {
-    let around = field.len();
-    let every = around.div_ceil(MAP_COLUMNS).max(1);
-    let across = field.first().map_or(0, Vec::len);
-    let (first, first_deg) = cut(&c.pressure_map_mpa);
-    // kuva draws rows upwards: one row per axial cell, one column per angle.
-    let column = |i: usize| &field[(first + i) % around];
-    let grid: Vec<Vec<f64>> =
-        (0..across).map(|j| (0..around).step_by(every).map(|i| column(i)[j]).collect()).collect();
-    let colours = colours(&grid, top);
-    let half_cell = 180.0 / around as f64 * every as f64;
-    let plots: Vec<Plot> = vec![
-        QuiverPlot::new()
-            .with_color_map(ColorMap::Cividis)
-            .with_color_range(0.0, top)
-            .with_color_legend_label(label)
-            .into(),
-        Heatmap::new()
-            .with_data(grid)
-            .with_color_map(colours)
-            .with_x_range(first_deg - half_cell, first_deg + 360.0 - half_cell)
-            .with_y_range(-c.width_mm / 2.0, c.width_mm / 2.0)
-            .with_cell_size(1.0)
-            .into(),
-    ];
-    let layout = half(styled(Layout::auto_from_plots(&plots)))
-        .with_x_label("angle around the shell [deg]")
-        .with_y_label("axial position [mm]")
-        .with_x_axis_min(first_deg - half_cell)
-        .with_x_axis_max(first_deg + 360.0 - half_cell)
-        .with_y_axis_min(-c.width_mm / 2.0)
-        .with_y_axis_max(c.width_mm / 2.0)
-        .with_x_tick_step(90.0)
-        .with_show_grid(false);
-    render(plots, layout, name)
 }
 
 /// KKT residual and violation over the iterations, on a logarithmic scale.

@@ -1,7 +1,7 @@
 //! `report.html`: one self-contained page, the answer first, then the evidence.
 
 use super::data::TOUCH_MPA;
-use super::{Findings, figures};
+use super::{Findings, figures, maps};
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 use serde::Serialize;
@@ -23,6 +23,7 @@ struct CycleFigures {
     load: String,
     pressure_map: String,
     fill_map: Option<String>,
+    sensitivity_maps: Option<[String; 2]>,
 }
 
 /// The page as text.
@@ -46,8 +47,9 @@ pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
             }),
             loss: figures::loss(c, &format!("loss-{k}")),
             load: figures::load(c, &format!("load-{k}")),
-            pressure_map: figures::pressure_map(c, &format!("map-{k}")),
-            fill_map: figures::fill_map(c, &format!("fill-{k}")),
+            pressure_map: maps::pressure_map(c, &format!("map-{k}")),
+            fill_map: maps::fill_map(c, &format!("fill-{k}")),
+            sensitivity_maps: maps::sensitivity_maps(c, &format!("sensitivity-{k}")),
         })
         .collect();
     let convergence = (!report.history.is_empty()).then(|| figures::convergence(report, "convergence"));

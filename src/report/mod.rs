@@ -8,15 +8,18 @@ mod csv_file;
 mod data;
 mod figures;
 mod html;
+mod maps;
 mod svg;
+mod vtk;
 
 pub use characteristic::{
     CHARACTERISTIC_FORMAT, Characteristic, CharacteristicColumn, CharacteristicStatus, CharacteristicTable,
     characteristic_csv, characteristic_html, write_characteristic,
 };
-pub use csv_file::orbit_csv;
+pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
 pub use html::html;
+pub use vtk::film_vtk;
 
 use std::path::Path;
 
@@ -25,12 +28,22 @@ pub fn schema() -> serde_json::Value {
     schemars::schema_for!(Report).to_value()
 }
 
-/// Writes `report.json`, `report.html` and `orbit.csv` into a folder, which is made if need be.
+/// Writes `report.json`, `report.html`, `orbit.csv` and, where there are any, the fields (`sensitivity.csv`, `*.vts`) into a
+/// folder, which is made if need be.
 pub fn write_folder(findings: &Findings, folder: &Path) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let json = serde_json::to_string_pretty(&findings.report).map_err(std::io::Error::other)?;
     std::fs::write(folder.join("report.json"), json + "\n")?;
     std::fs::write(folder.join("orbit.csv"), orbit_csv(findings).map_err(std::io::Error::other)?)?;
+    if findings.curves.iter().any(|c| c.sensitivity.is_some()) {
+        let csv = sensitivity_csv(findings).map_err(std::io::Error::other)?;
+        std::fs::write(folder.join("sensitivity.csv"), csv)?;
+    }
+    for (k, c) in findings.curves.iter().enumerate() {
+        for (surface, text) in film_vtk(c) {
+            std::fs::write(folder.join(format!("{surface}-{}.vts", k + 1)), text)?;
+        }
+    }
     std::fs::write(folder.join("report.html"), html(findings).map_err(std::io::Error::other)?)
 }
 

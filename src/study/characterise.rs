@@ -223,7 +223,7 @@ impl Work<'_> {
         let model = orbit.model(&model).map_err(|e| e.to_string())?;
         let mean = |o: BearingOutput| orbit.mean(o.index());
         let (loss, contact) = (mean(BearingOutput::Loss), mean(BearingOutput::ContactLoss));
-        let z = orbit.state(0, 0);
+        let z = orbit.state(0);
         let n = model.film().unknowns();
         let c = model.setup().diametral_clearance_m / 2.0;
         let row = vec![

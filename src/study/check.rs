@@ -18,6 +18,8 @@ use std::path::Path;
 
 /// Cycles that are held in memory at a time, per bearing and operating point.
 const KEPT_CYCLES: f64 = 5.0;
+/// Share of a cycle that checkpoints take.
+const CHECKPOINTED: f64 = 1.0 / 16.0;
 /// Memory a study may ask for.
 const MOST_BYTES: f64 = 8e9;
 
@@ -226,10 +228,14 @@ fn search(
 
 /// Why a study needs more memory than there is.
 fn too_large(study: &Study) -> Option<String> {
-    let cells: usize = (0..study.bearings.len()).map(|b| study.cells(b)).sum();
-    let bytes = (cells * study.orbit.steps * study.points.len()) as f64 * 8.0 * KEPT_CYCLES;
+    let cycle = |bearing: usize| {
+        let states = (study.cells(bearing) * study.orbit.steps * size_of::<f64>()) as f64;
+        if states <= study.orbit.memory_bytes as f64 { states } else { states * CHECKPOINTED }
+    };
+    let cycles: f64 = (0..study.bearings.len()).map(cycle).sum();
+    let bytes = cycles * study.points.len() as f64 * KEPT_CYCLES;
     (bytes > MOST_BYTES).then(|| {
         let (needed, most) = (crate::report::short(bytes * 1e-9), crate::report::short(MOST_BYTES * 1e-9));
-        format!("cells times steps, bearings and operating points need {needed} GB; at most {most} GB")
+        format!("cells times steps, bearings and operating points need {needed} GB; at most {most} GB (a smaller orbit.memory keeps checkpoints only)")
     })
 }

@@ -35,6 +35,7 @@ mod roughness;
 mod run;
 mod schema;
 mod sections;
+mod sensitivity;
 mod shapes;
 mod supply;
 mod table;

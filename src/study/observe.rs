@@ -4,7 +4,6 @@ use super::build::{CaseLabel, Plan};
 use super::check::Study;
 use super::vocabulary::QuantityName;
 use crate::cranktrain::{BearingOutput, JournalBearing};
-use crate::dae::At;
 use crate::film::{Axial, FilmModel, FilmSite, Gap};
 use crate::laws::ZERO_CELSIUS_K;
 use crate::optimise::Evaluated;
@@ -96,7 +95,9 @@ pub(super) fn curves(
         load_kn: now.load_kn,
         pressure_map_mpa: now.map_mpa,
         fill_map: now.fill_map,
+        sensitivity: None,
         width_mm: model.setup().width_m * 1e3,
+        diameter_mm: model.setup().diameter_m * 1e3,
     })
 }
 
@@ -121,9 +122,9 @@ impl Trace {
     fn of(model: &JournalBearing, orbit: &Orbit) -> Self {
         let mut trace = Self::default();
         let mut highest = f64::NEG_INFINITY;
-        let (film, mut room) = (model.film(), Vec::new());
-        for n in 0..orbit.steps() {
-            let at = At { t_s: orbit.time_s(n), z: orbit.state(n, 0), rate: &[] };
+        let film = model.film();
+        orbit.for_each(model, |n, at| {
+            let mut room = Vec::new();
             let site = model.film_site(at, &mut room);
             let (u, q, y) = (site.input, model.film_unknowns(at.z), &orbit.outputs[n]);
             let pressure = film.pressure_max_pa(&site, q);
@@ -148,7 +149,7 @@ impl Trace {
                     trace.fill_map = film.fill_map(&site, q);
                 }
             }
-        }
+        });
         trace
     }
 }
@@ -190,10 +191,15 @@ pub(super) fn orbit_report(model: &JournalBearing, orbit: &Orbit, c: &Curves) ->
         steps: orbit.steps(),
         cycles: orbit.cycles,
         periodicity: orbit.periodicity,
+        corrections: orbit.corrections,
+        recording: orbit.recording,
+        bytes_per_step: orbit.recording.bytes_per_step(model),
     }
 }
 
 /// Cells over all steps at which the film has a kink.
 pub(super) fn weakly_active(model: &JournalBearing, orbit: &Orbit) -> usize {
-    (0..orbit.steps()).map(|n| model.film().weakly_active(model.film_unknowns(orbit.state(n, 0)))).sum()
+    let mut count = 0;
+    orbit.for_each(model, |_, at| count += model.film().weakly_active(model.film_unknowns(at.z)));
+    count
 }

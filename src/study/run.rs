@@ -4,8 +4,8 @@ use super::build::{Plan, plan};
 use super::check::Study;
 use super::faults::pointer;
 use super::methods::methods;
-use super::observe;
 use super::vocabulary::QuantityName;
+use super::{observe, sensitivity};
 use crate::gradient::{GradientTable, taylor_table};
 use crate::optimise::{Evaluated, EvaluationError, Minimum, Outcome, Sense, minimise};
 use crate::report::{
@@ -81,7 +81,7 @@ fn report(
     if let Some(known) = &known {
         report.objective = objective(study, plan, known);
         let start = known.start.as_deref();
-        let all: Vec<Curves> = (0..plan.cases.len())
+        let mut all: Vec<Curves> = (0..plan.cases.len())
             .filter_map(|c| observe::curves(study, plan, c, &minimum.x, &known.optimum, start))
             .collect();
         for (case, c) in all.iter().enumerate() {
@@ -96,7 +96,7 @@ fn report(
             report.objective.saving_percent = None;
         }
         if minimum.outcome != Outcome::Cancelled {
-            report.gradient = gradient(study, plan, &minimum.x, &known.optimum, context).ok();
+            report.gradient = gradient(study, plan, &minimum.x, &known.optimum, &mut all, context).ok();
         }
         findings.curves = all;
     }
@@ -295,6 +295,7 @@ fn gradient(
     plan: &Plan,
     x: &[f64],
     at: &Evaluated,
+    curves: &mut [Curves],
     context: RunContext<'_>,
 ) -> Result<GradientReport, EvaluationError> {
     let tables = plan.problem.tables(x)?;
@@ -304,9 +305,13 @@ fn gradient(
         let model = plan.problem.model(c, x)?;
         weakly_active_cells += observe::weakly_active(&model, &at.orbits[c]);
         rows.extend(case_rows(study, plan, c, x, at, table, context));
+        if let Some(curves) = curves.get_mut(c) {
+            curves.sensitivity = sensitivity::maps(plan, c, x, at, table, context.cancel);
+        }
     }
     let closure = tables.iter().fold(0.0f64, |a, t| a.max(t.closure));
-    Ok(GradientReport { engine: study.engine, rows, closure, weakly_active_cells })
+    let gap_sensitivity = curves.iter().filter_map(sensitivity::summary).collect();
+    Ok(GradientReport { engine: study.engine, rows, closure, weakly_active_cells, gap_sensitivity })
 }
 
 fn case_rows(

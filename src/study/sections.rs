@@ -38,6 +38,14 @@ pub(super) fn orbit_options(o: &mut OrbitFile, faults: &mut Faults) -> OrbitOpti
         |v| (2.0..=10_000.0).contains(&v),
         "between 2 and 10000",
     );
+    let memory = faults.or(&mut o.memory, "orbit.memory", "1 GB".parse().expect("a valid amount"));
+    let memory_bytes = memory.si();
+    faults.range(
+        Some(memory_bytes),
+        "orbit.memory",
+        |v| (0.0..=1e12).contains(&v),
+        "between \"0 B\" and \"1000 GB\"",
+    );
     let scheme = match scheme {
         SchemeName::Bdf1 => Scheme::Bdf1,
         SchemeName::Bdf2 => Scheme::Bdf2,

@@ -9,7 +9,7 @@
 //! journal, a micrometre matters. The derivative by a profile's coefficient is its projection on the profile's base
 //! function: exactly and without further work for shapes that stand still; shapes that turn have coefficients of their own
 //! in `u`, because the journal's grid interpolates linearly between its columns. A grid that turns by `a` puts
-//! `(1 - f) J_k + f J_{k+1}` on the column of the shell at `phi`, with `k + f = (phi - a) / dphi - 1/2`.
+//! `(1 - f) J_k + f J_{k+1}` on the column of the shell at `phi`, with `k + f = (phi - a) / dphi`.
 
 use super::shapes::Shapes;
 use super::{BearingParameter, JournalBearing, Tilt};

@@ -1,6 +1,6 @@
 //! Film and orbit as written.
 
-use crate::units::Pressure;
+use crate::units::{Information, Pressure};
 
 words! {
     /// Film model, in order of fidelity.
@@ -77,5 +77,7 @@ section! {
         periodicity_tolerance: f64,
         /// Cycles after which settling is given up. Default 30.
         max_cycles: usize,
+        /// Memory for the recording of one cycle under way (of one bearing at one operating point). Default "1 GB". With room for the factors of every step, gradients factorise each step once and slow settling is accelerated; with less, steps are factorised again; with still less, only checkpoints are kept and steps are solved again. The results are the same.
+        memory: Information,
     }
 }
