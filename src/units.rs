@@ -199,6 +199,12 @@ dimensions! {
         &[("1/GPa", 1e-9, 0.0), ("1/MPa", 1e-6, 0.0), ("1/Pa", 1.0, 0.0)];
     /// A shear rate.
     ShearRateKind, ShearRate, "a shear rate", "1e6 1/s", &[("1/s", 1.0, 0.0)];
+    /// A volume worn off per time.
+    WearRateKind, WearRate, "a wear rate", "5 mm3/h",
+        &[("mm3/h", 1e-9 / 3600.0, 0.0), ("mm3/s", 1e-9, 0.0), ("m3/s", 1.0, 0.0)];
+    /// A volume worn off per load and way: hardness in the denominator.
+    WearCoefficientKind, WearCoefficient, "a wear coefficient", "1e-8 mm3/(N m)",
+        &[("mm3/(N m)", 1e-9, 0.0), ("m3/(N m)", 1.0, 0.0), ("1/Pa", 1.0, 0.0)];
     /// An amount of memory.
     InformationKind, Information, "an amount of memory", "1 GB",
         &[("GB", 1e9, 0.0), ("MB", 1e6, 0.0), ("kB", 1e3, 0.0), ("B", 1.0, 0.0)];

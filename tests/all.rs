@@ -11,6 +11,7 @@ mod literature;
 mod main_job;
 mod orbits;
 mod recording;
+mod sensitivity;
 mod study_physics;
 
 #[global_allocator]

@@ -185,6 +185,11 @@ const PHYSICS: &[(&str, &str)] = &[
         "quantity = \"contact-loss\"\nat_least = \"3 W\"",
     ),
     (
+        "quantity = \"max-film-pressure\"\nat_most = \"300 MPa\"",
+        "quantity = \"film-temperature\"\nat_most = \"90 W\"\n[[constraints]]\nquantity = \"wear-rate\"\nat_least = \"1 mm3/h\"",
+    ),
+    ("[film]", "[orbit]\nmemory = \"12\"\n[film]"),
+    (
         "\"oil.inlet_temperature\" = ",
         "\"bearings.big_end.supply.pressure\" = \"x\"\n\"oil.inlet_temperature\" = ",
     ),

@@ -171,6 +171,18 @@ at_most = "500 W"
 [[constraints]]
 quantity = "min-film-thickness"
 at_least = "1 um"
+[[constraints]]
+quantity = "hydrodynamic-loss"
+at_most = "5 kW"
+[[constraints]]
+quantity = "film-temperature"
+at_most = "120 degC"
+[[constraints]]
+quantity = "wear-rate"
+at_most = "1 mm3/h"
+[[constraints]]
+quantity = "side-flow"
+at_least = "1 l/min"
 "#;
 
 #[test]
@@ -185,6 +197,7 @@ fn a_study_of_everything_is_read_printed_simulated_and_differentiated() {
         "cavity_shear = \"fill\"",
         "modulus = \"58.61 GPa\"",
         "boundary_friction = 0.08",
+        "wear_coefficient = \"1e-8 mm3/(N m)\"",
         "film_share = 0.5",
         "ambient_temperature = \"60 degC\"",
         "heat_capacity = \"2000 J/(kg K)\"",

@@ -197,6 +197,7 @@ fn setup(
         inlet_temperature_k: oil.inlet_temperature_k,
         journal_roughness_m: plan.roughness.as_ref().map_or(0.0, |r| r.journal_m),
         shell_roughness_m: plan.roughness.as_ref().map_or(0.0, |r| r.shell_m),
+        wear_m3_per_j: plan.roughness.as_ref().map_or(0.0, |r| r.wear_m3_per_j),
         supply_pressure_pa: plan.supply.as_ref().map_or(0.0, |s| s.pressure_pa),
         tilt: plan.tilt,
         shapes: plan.shapes.clone(),

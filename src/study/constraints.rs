@@ -6,7 +6,7 @@ use super::file::{ConstraintFile, StudyFile};
 use super::plans::ConstraintPlan;
 use super::vocabulary::QuantityName;
 use crate::optimise::Sense;
-use crate::units::{Length, Power, Pressure, VolumeFlow};
+use crate::units::{Length, Power, Pressure, Temperature, VolumeFlow, WearRate};
 
 /// Limits of a safe design.
 pub(super) fn constraints(
@@ -63,6 +63,9 @@ fn constraint(
     let limit =
         limit_si(quantity, &text).map_err(|e| faults.add(&at(key), format!("found \"{text}\": {e}"))).ok()?;
     faults.range(Some(limit), &at(key), |v| v > 0.0, "above zero");
+    if quantity == QuantityName::WearRate {
+        needs_wear(&at("quantity"), bearings, bearing, faults);
+    }
     if quantity.is_of_contact() {
         needs_contact(&at("quantity"), bearings, bearing, faults);
     }
@@ -83,6 +86,7 @@ fn wrong_side(quantity: QuantityName, sense: Sense) -> Option<&'static str> {
             Some("a largest pressure needs at_most")
         }
         QuantityName::ContactLoss if sense == Sense::AtLeast => Some("a contact loss needs at_most"),
+        QuantityName::WearRate if sense == Sense::AtLeast => Some("a wear rate needs at_most"),
         _ => None,
     }
 }
@@ -100,10 +104,28 @@ fn needs_contact(path: &str, bearings: &Bearings, only: Option<usize>, faults: &
     }
 }
 
+/// A bearing whose contact rubs off nothing keeps every limit on wear.
+fn needs_wear(path: &str, bearings: &Bearings, only: Option<usize>, faults: &mut Faults) {
+    let affected = bearings.iter().enumerate().filter(|(b, _)| only.is_none_or(|only| only == *b));
+    for (_, (name, plan)) in affected {
+        let Some(plan) = plan.as_ref().filter(|p| p.has_contact()) else { continue };
+        if plan.roughness.as_ref().is_some_and(|r| r.wear_m3_per_j == 0.0) {
+            let needed = format!("bearings.{name}.roughness.wear_coefficient and .boundary_friction");
+            faults.add(path, format!("has no effect on \"{name}\": {needed} must be above zero"));
+        }
+    }
+}
+
 fn limit_si(quantity: QuantityName, text: &str) -> Result<f64, String> {
     match quantity {
         QuantityName::MinFilmThickness => text.parse::<Length>().map(|v| v.si()).map_err(|e| e.to_string()),
-        QuantityName::ContactLoss => text.parse::<Power>().map(|v| v.si()).map_err(|e| e.to_string()),
+        QuantityName::ContactLoss | QuantityName::HydrodynamicLoss => {
+            text.parse::<Power>().map(|v| v.si()).map_err(|e| e.to_string())
+        }
+        QuantityName::FilmTemperature => {
+            text.parse::<Temperature>().map(|v| v.si()).map_err(|e| e.to_string())
+        }
+        QuantityName::WearRate => text.parse::<WearRate>().map(|v| v.si()).map_err(|e| e.to_string()),
         QuantityName::SideFlow => text.parse::<VolumeFlow>().map(|v| v.si()).map_err(|e| e.to_string()),
         _ => text.parse::<Pressure>().map(|v| v.si()).map_err(|e| e.to_string()),
     }

@@ -96,6 +96,8 @@ pub struct RoughnessPlan {
     pub journal_m: f64,
     /// Root mean square roughness of the shell, m.
     pub shell_m: f64,
+    /// Volume worn off per work of contact friction, m3/J.
+    pub wear_m3_per_j: f64,
     /// What the film makes of them.
     pub film: Roughness,
 }

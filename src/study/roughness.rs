@@ -46,21 +46,22 @@ pub(super) fn roughness(file: &mut RoughnessFile, path: &str, faults: &mut Fault
     }
     let surfaces = RoughSurfaces::new(lay[0], lay[1], journal_m, shell_m);
     let surfaces = surfaces.map_err(|e| faults.add(path, e.to_string())).ok()?;
-    let (contact, boundary_friction) = contact?;
+    let (contact, boundary_friction, wear_m3_per_j) = contact?;
     let depth_m = DEPTH * journal_m.hypot(shell_m);
     Some(RoughnessPlan {
         journal_m,
         shell_m,
+        wear_m3_per_j,
         film: Roughness { surfaces, contact, boundary_friction, depth_m },
     })
 }
 
-/// Contact law and its friction coefficient.
+/// Contact law, its friction coefficient, and the volume worn off per work of friction, m3/J.
 fn contact(
     file: &mut RoughnessFile,
     path: &str,
     faults: &mut Faults,
-) -> Option<(Option<GreenwoodTripp>, f64)> {
+) -> Option<(Option<GreenwoodTripp>, f64, f64)> {
     let at = |key: &str| join(path, key);
     if faults.or(&mut file.contact, &at("contact"), ContactName::GreenwoodTripp) == ContactName::None {
         refuse_others!(
@@ -77,10 +78,11 @@ fn contact(
                 modulus,
                 summit_sigma_ratio,
                 summit_height_ratio,
+                wear_coefficient,
                 boundary_friction,
             ]
         );
-        return Some((None, 0.0));
+        return Some((None, 0.0, 0.0));
     }
     let name = faults.or(&mut file.contact_integral, &at("contact_integral"), ContactIntegralName::Exact);
     let integral = match name {
@@ -98,9 +100,14 @@ fn contact(
     faults.range(Some(spread), &at("summit_sigma_ratio"), |v| v > 0.0 && v <= 1.0, "above 0 and at most 1");
     faults.range(Some(height), &at("summit_height_ratio"), |v| (-3.0..=3.0).contains(&v), "between -3 and 3");
     faults.range(Some(friction), &at("boundary_friction"), |v| (0.0..=1.0).contains(&v), "between 0 and 1");
+    let wear = faults.or(&mut file.wear_coefficient, &at("wear_coefficient"), zero("1e-8 mm3/(N m)")).si();
+    let words = "between 0 and 1e-3 mm3/(N m)";
+    faults.range(Some(wear), &at("wear_coefficient"), |v| (0.0..=1e-12).contains(&v), words);
     let law = summits(file, path, integral, modulus, faults)?;
     let law = GreenwoodTripp { summit_sigma_ratio: spread, summit_height_ratio: height, ..law };
-    Some((Some(law), friction))
+    // Wear goes with the work of friction; without friction it is not known.
+    let per_work = if friction > 0.0 { wear / friction } else { 0.0 };
+    Some((Some(law), friction, per_work))
 }
 
 /// The elastic factor as given, or from the shape of the summits.

@@ -217,7 +217,7 @@ fn unknown_constraints(study: &Study) -> Vec<ConstraintReport> {
         bearings.flat_map(move |b| study.points.iter().map(move |p| (c, b, p)))
     });
     all.map(|(c, bearing, point)| {
-        let (unit, scale) = c.quantity.unit();
+        let (unit, _) = c.quantity.unit();
         ConstraintReport {
             quantity: c.quantity.key().to_owned(),
             bearing: study.bearings[bearing].name.clone(),
@@ -225,7 +225,7 @@ fn unknown_constraints(study: &Study) -> Vec<ConstraintReport> {
             sense: words(c.sense).to_owned(),
             value: None,
             exact_value: None,
-            limit: tidy(c.limit / scale),
+            limit: tidy(c.quantity.shown(c.limit)),
             unit: unit.to_owned(),
             active: false,
             met: false,
@@ -271,16 +271,16 @@ fn constraints(
             QuantityName::MinFilmThickness => {
                 curves[label.case].film_min_um.iter().copied().fold(f64::INFINITY, f64::min)
             }
-            _ => orbit.value(&exact) / scale,
+            _ => c.quantity.shown(orbit.value(&exact)),
         };
         ConstraintReport {
             quantity: c.quantity.key().to_owned(),
             bearing: study.bearings[case.bearing].name.clone(),
             operating_point: study.points[case.point].name.clone(),
             sense: words(c.sense).to_owned(),
-            value: Some(value / scale),
+            value: Some(c.quantity.shown(value)),
             exact_value: Some(exact_value),
-            limit: tidy(c.limit / scale),
+            limit: tidy(c.quantity.shown(c.limit)),
             unit: unit.to_owned(),
             active,
             met: excess <= study.optimiser.tolerance.max(FEASIBLE),

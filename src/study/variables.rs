@@ -89,8 +89,9 @@ impl Variable {
 
     /// Unit of the derivative of a quantity by this variable.
     pub(super) fn slope_unit(&self, quantity: &str) -> String {
+        let quantity = quantity.replace("degC", "K");
         match self.unit {
-            "1" => quantity.to_owned(),
+            "1" => quantity,
             unit => format!("{quantity}/{}", unit.replace("degC", "K")),
         }
     }

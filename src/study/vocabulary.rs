@@ -1,6 +1,7 @@
 //! The words of a study: quantities.
 
 use crate::cranktrain::BearingOutput;
+use crate::laws::ZERO_CELSIUS_K;
 use crate::orbit::{Quantity, Reduction};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,16 +24,22 @@ pub enum QuantityName {
     MaxContactPressure,
     /// Mean friction loss of touching asperities: the wear that is to be expected.
     ContactLoss,
+    /// Mean friction loss of the oil film alone.
+    HydrodynamicLoss,
+    /// Effective temperature of the film: given, or the result of the heat balance.
+    FilmTemperature,
+    /// Mean volume worn off per time after Archard, by roughness.wear_coefficient.
+    WearRate,
 }
 
 impl QuantityName {
     /// Whether it is about touching asperities.
     pub(super) fn is_of_contact(self) -> bool {
-        matches!(self, Self::MaxContactPressure | Self::ContactLoss)
+        matches!(self, Self::MaxContactPressure | Self::ContactLoss | Self::WearRate)
     }
 
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 10] = [
         Self::MeanFrictionLoss,
         Self::MinFilmThickness,
         Self::MaxFilmPressure,
@@ -40,15 +47,28 @@ impl QuantityName {
         Self::SideFlow,
         Self::MaxContactPressure,
         Self::ContactLoss,
+        Self::HydrodynamicLoss,
+        Self::FilmTemperature,
+        Self::WearRate,
     ];
 
     /// Unit in reports, and its size in SI units.
     pub fn unit(self) -> (&'static str, f64) {
         match self {
-            Self::MeanFrictionLoss | Self::ContactLoss => ("W", 1.0),
+            Self::MeanFrictionLoss | Self::ContactLoss | Self::HydrodynamicLoss => ("W", 1.0),
+            Self::FilmTemperature => ("degC", 1.0),
+            Self::WearRate => ("mm3/h", 1e-9 / 3600.0),
             Self::MinFilmThickness => ("um", 1e-6),
             Self::MaxFilmPressure | Self::SpecificLoad | Self::MaxContactPressure => ("MPa", 1e6),
             Self::SideFlow => ("l/min", 1e-3 / 60.0),
+        }
+    }
+
+    /// A value in the unit of reports.
+    pub fn shown(self, si: f64) -> f64 {
+        match self {
+            Self::FilmTemperature => si - ZERO_CELSIUS_K,
+            _ => si / self.unit().1,
         }
     }
 
@@ -62,6 +82,9 @@ impl QuantityName {
             Self::SideFlow => "side flow",
             Self::MaxContactPressure => "maximum contact pressure",
             Self::ContactLoss => "contact loss",
+            Self::HydrodynamicLoss => "hydrodynamic loss",
+            Self::FilmTemperature => "film temperature",
+            Self::WearRate => "wear rate",
         }
     }
 
@@ -75,6 +98,9 @@ impl QuantityName {
             Self::SideFlow => "side-flow",
             Self::MaxContactPressure => "max-contact-pressure",
             Self::ContactLoss => "contact-loss",
+            Self::HydrodynamicLoss => "hydrodynamic-loss",
+            Self::FilmTemperature => "film-temperature",
+            Self::WearRate => "wear-rate",
         }
     }
 
@@ -99,6 +125,9 @@ impl QuantityName {
                 both(BearingOutput::ContactPeak, Reduction::SmoothMax(sharpness), Reduction::Max)
             }
             Self::ContactLoss => both(BearingOutput::ContactLoss, Reduction::Mean, Reduction::Mean),
+            Self::HydrodynamicLoss => both(BearingOutput::HydrodynamicLoss, Reduction::Mean, Reduction::Mean),
+            Self::FilmTemperature => both(BearingOutput::FilmTemperature, Reduction::Mean, Reduction::Mean),
+            Self::WearRate => both(BearingOutput::WearRate, Reduction::Mean, Reduction::Mean),
         }
     }
 }

@@ -1,11 +1,11 @@
 //! The fields through which the parameters of a bearing act, and the sensitivity map that falls out of them.
 //!
 //! ```text
-//! u = (scalars of the film's input | gap added by the shell, per cell | gap added by the journal, per cell of a grid that
+//! u = (scalars of the film's input | film temperature | gap added by the shell, per cell | gap added by the journal, per cell of a grid that
 //!      turns with it | coefficients of shapes that turn)
 //! ```
 //!
-//! A derivative by the second and third part is the derivative by the local gap: where on the shell, and where on the
+//! A derivative by the third and fourth part is the derivative by the local gap: where on the shell, and where on the
 //! journal, a micrometre matters. The derivative by a profile's coefficient is its projection on the profile's base
 //! function: exactly and without further work for shapes that stand still; shapes that turn have coefficients of their own
 //! in `u`, because the journal's grid interpolates linearly between its columns. A grid that turns by `a` puts
@@ -24,6 +24,11 @@ pub struct GapSensitivity {
     pub journal: Vec<Vec<f64>>,
 }
 
+/// Where the film temperature stands in `u`.
+pub(super) const FILM_TEMPERATURE: usize = INPUTS;
+/// Scalars in front of the gaps.
+const SCALARS: usize = INPUTS + 1;
+
 /// Where the parts of `u` stand.
 #[derive(Debug, Clone, Copy)]
 struct Parts {
@@ -33,15 +38,15 @@ struct Parts {
 
 impl Parts {
     fn shell(self) -> std::ops::Range<usize> {
-        INPUTS..INPUTS + self.cells
+        SCALARS..SCALARS + self.cells
     }
 
     fn journal(self) -> std::ops::Range<usize> {
-        INPUTS + self.cells..INPUTS + 2 * self.cells
+        SCALARS + self.cells..SCALARS + 2 * self.cells
     }
 
     fn turning(self) -> std::ops::Range<usize> {
-        INPUTS + 2 * self.cells..INPUTS + 2 * self.cells + self.turning
+        SCALARS + 2 * self.cells..SCALARS + 2 * self.cells + self.turning
     }
 }
 
@@ -56,7 +61,7 @@ impl JournalBearing {
 
     /// `u_p dp`.
     pub(super) fn fields_along(&self, dp: &[f64], du: &mut [f64]) {
-        let mut input = FilmInput::default();
+        let (mut input, mut temperature) = (FilmInput::default(), 0.0);
         for (kind, d) in self.setup.parameters.iter().zip(dp) {
             match *kind {
                 BearingParameter::Width => input.width_m += d,
@@ -65,6 +70,7 @@ impl JournalBearing {
                 BearingParameter::InletTemperature if self.heat.is_some() => {}
                 BearingParameter::InletTemperature | BearingParameter::FilmTemperature => {
                     input.viscosity_pa_s += self.viscosity_slope * d;
+                    temperature += d;
                 }
                 BearingParameter::JournalRoughness => input.journal_roughness_m += d,
                 BearingParameter::ShellRoughness => input.shell_roughness_m += d,
@@ -76,6 +82,7 @@ impl JournalBearing {
         let parts = self.parts();
         du.fill(0.0);
         du[..INPUTS].copy_from_slice(&input.to_array());
+        du[FILM_TEMPERATURE] = temperature;
         let (head, turning) = du.split_at_mut(parts.turning().start);
         self.shapes.along(dp, &mut head[parts.shell()], turning);
     }
@@ -91,7 +98,7 @@ impl JournalBearing {
                 BearingParameter::DiametralClearance => by.clearance_m / 2.0,
                 BearingParameter::InletTemperature if self.heat.is_some() => 0.0,
                 BearingParameter::InletTemperature | BearingParameter::FilmTemperature => {
-                    self.viscosity_slope * by.viscosity_pa_s
+                    self.viscosity_slope * by.viscosity_pa_s + u[FILM_TEMPERATURE]
                 }
                 BearingParameter::JournalRoughness => by.journal_roughness_m,
                 BearingParameter::ShellRoughness => by.shell_roughness_m,
@@ -108,13 +115,13 @@ impl JournalBearing {
     pub(super) fn seen_along(&self, angle_rad: f64, du: &[f64]) -> (FilmInput, Vec<f64>) {
         let (parts, moved) = (self.parts(), |v: &[f64]| v.iter().any(|d| *d != 0.0));
         let input = FilmInput::from_array(std::array::from_fn(|k| du[k]));
-        if !moved(&du[INPUTS..]) {
+        if !moved(&du[SCALARS..]) {
             return (input, Vec::new());
         }
         let mut shape = du[parts.shell()].to_vec();
         if moved(&du[parts.journal()]) {
             self.turn(angle_rad, |shell, journal, share| {
-                shape[shell] += share * du[INPUTS + parts.cells + journal]
+                shape[shell] += share * du[SCALARS + parts.cells + journal]
             });
         }
         self.shapes.turned_along(angle_rad, &du[parts.turning()], &mut shape);

@@ -79,6 +79,9 @@ impl JournalBearing {
             film.contact_peak_pa,
             self.specific_load_pa(t_s),
             film.side_flow_m3_s,
+            film.loss_w,
+            self.setup.film_temperature_k(),
+            self.setup.wear_m3_per_j * film.contact_loss_w,
         ]);
     }
 }

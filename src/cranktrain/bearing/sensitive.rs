@@ -1,6 +1,7 @@
 //! The bearing differentiated, forwards and backwards: the film's derivatives with states and parameters in place of
 //! its input.
 
+use super::fields::FILM_TEMPERATURE;
 use super::model::{BearingFactors, BearingRoom};
 use super::{BearingOutput, JournalBearing};
 use crate::dae::{At, Cotangent, Direction, SensitiveDae};
@@ -53,13 +54,14 @@ impl JournalBearing {
     }
 
     /// Weights on the film's outputs for weights on the bearing's.
-    fn film_weights(w: &[f64]) -> FilmOutput {
+    fn film_weights(&self, w: &[f64]) -> FilmOutput {
         let at = |o: BearingOutput| w[o.index()];
         FilmOutput {
-            loss_w: at(BearingOutput::Loss),
+            loss_w: at(BearingOutput::Loss) + at(BearingOutput::HydrodynamicLoss),
             contact_loss_w: at(BearingOutput::Loss)
                 + at(BearingOutput::ContactLoss)
-                + at(BearingOutput::Dissipation),
+                + at(BearingOutput::Dissipation)
+                + self.setup.wear_m3_per_j * at(BearingOutput::WearRate),
             dissipation_w: at(BearingOutput::Dissipation),
             gap_min_m: at(BearingOutput::GapMin),
             pressure_peak_pa: at(BearingOutput::PressurePeak),
@@ -188,12 +190,13 @@ impl SensitiveDae for JournalBearing {
         let d = self.setup.film.tangent_at(&self.place(point, &site, at), &change, wanted);
         self.outputs_of(at.t_s, &d.output, dy);
         let shrink = width / self.setup.width_m + diameter / self.setup.diameter_m;
+        dy[BearingOutput::FilmTemperature.index()] = direction.u[FILM_TEMPERATURE];
         dy[BearingOutput::SpecificLoad.index()] = -self.specific_load_pa(at.t_s) * shrink;
     }
 
     fn output_cotangent(&self, point: &BearingPoint, at: At, w: &[f64], out: Cotangent) {
         let (n, site) = (self.layout.n, point.site());
-        let weights = FilmWeights { residual: &[], content: &[], output: Self::film_weights(w) };
+        let weights = FilmWeights { residual: &[], content: &[], output: self.film_weights(w) };
         let mut bar = self.setup.film.cotangent_at(&self.place(point, &site, at), &weights);
         let load = w[BearingOutput::SpecificLoad.index()] * self.specific_load_pa(at.t_s);
         bar.input.width_m -= load / self.setup.width_m;
@@ -202,6 +205,7 @@ impl SensitiveDae for JournalBearing {
         for a in 0..2 {
             out.rate[n + a] += bar.input.velocity_m_s[a];
         }
+        out.u[FILM_TEMPERATURE] += w[BearingOutput::FilmTemperature.index()];
         self.seen_back(point.journal_angle_rad, &bar, out.u);
     }
 }

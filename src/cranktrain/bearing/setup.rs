@@ -51,11 +51,17 @@ pub enum BearingOutput {
     SpecificLoad,
     /// Net flow of oil out of both edges, m3/s.
     SideFlow,
+    /// Hydrodynamic part of the friction loss, W.
+    HydrodynamicLoss,
+    /// Effective temperature of the film, K; constant over the cycle.
+    FilmTemperature,
+    /// Volume worn off per time, m3/s (Archard).
+    WearRate,
 }
 
 impl BearingOutput {
     /// All outputs in their order.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 11] = [
         Self::Loss,
         Self::ContactLoss,
         Self::Dissipation,
@@ -64,6 +70,9 @@ impl BearingOutput {
         Self::ContactPeak,
         Self::SpecificLoad,
         Self::SideFlow,
+        Self::HydrodynamicLoss,
+        Self::FilmTemperature,
+        Self::WearRate,
     ];
 
     /// Position in the output vector.
@@ -121,6 +130,8 @@ pub struct BearingSetup {
     pub journal_roughness_m: f64,
     /// Root mean square roughness of the shell, m.
     pub shell_roughness_m: f64,
+    /// Volume worn off per work of contact friction, m3/J: Archard's `K / H` over the friction coefficient.
+    pub wear_m3_per_j: f64,
     /// Pressure of the oil supply above the surroundings, Pa.
     pub supply_pressure_pa: f64,
     /// Inclination of the journal.
@@ -148,6 +159,7 @@ impl BearingSetup {
             inlet_temperature_k: 350.0,
             journal_roughness_m: 0.0,
             shell_roughness_m: 0.0,
+            wear_m3_per_j: 0.0,
             supply_pressure_pa: 0.0,
             tilt: Tilt::Given([0.0; 2]),
             shapes: Vec::new(),

@@ -2,7 +2,7 @@
 
 use crate::study::Given;
 use crate::study::table::TableFile;
-use crate::units::{Angle, Length, Pressure};
+use crate::units::{Angle, Length, Pressure, WearCoefficient};
 
 words! {
     /// One of the two surfaces.
@@ -65,6 +65,8 @@ section! {
         summit_sigma_ratio: f64,
         /// Mean height of the summits above the mean plane over the roughness. Default 0.
         summit_height_ratio: f64,
+        /// Volume worn off per load and way, K / H of Archard (1953), for the quantity wear-rate. Default "1e-8 mm3/(N m)": lubricated metals under mild wear lie between 1e-10 and 1e-6.
+        wear_coefficient: WearCoefficient,
         /// Friction coefficient of touching asperities. Default 0.08: boundary lubrication by an engine oil with usual additives, 0.05 to 0.12.
         boundary_friction: f64,
     }
