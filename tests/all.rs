@@ -5,6 +5,7 @@ mod architecture;
 mod bad_studies;
 mod cli;
 mod common;
+mod curvature;
 mod film_derivatives;
 mod gradients;
 mod literature;

@@ -71,6 +71,9 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
         report.cost.gradient_calls,
         short(report.cost.seconds)
     );
+    if let Some(verdict) = &report.kkt.verdict {
+        text += &format!("second order: {verdict}\n");
+    }
     text
 }
 

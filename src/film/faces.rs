@@ -60,14 +60,14 @@ impl<const N: usize> Sides<'_, N> {
     #[inline(always)]
     fn pressure_flow(&self, around: bool, s: &Scalars) -> Partial {
         let [ra, rb] = self.resistances(around);
-        let (sum, aspect) = (ra + rb, if around { s.dz / s.dx } else { s.dx / s.dz });
-        let g = 2.0 / sum * aspect;
+        let (per_sum, aspect) = (1.0 / (ra + rb), if around { s.dz / s.dx } else { s.dx / s.dz });
+        let g = 2.0 * per_sum * aspect;
         let value = g * self.drop;
         let sign = if around { 1.0 } else { -1.0 };
         Partial {
             value,
             by_drop: g,
-            by_resistance: [-value / sum; 2],
+            by_resistance: [-value * per_sum; 2],
             by_dz: sign * value / s.dz,
             by_dx: -sign * value / s.dx,
             ..Partial::default()
@@ -79,9 +79,9 @@ impl<const N: usize> Sides<'_, N> {
     fn mean(&self, thickness: impl Fn(&Cell<N>) -> Jet<N>) -> (f64, [f64; 2], [f64; 2]) {
         let [ra, rb] = self.resistances(true);
         let (ta, tb) = (thickness(self.a).v, self.b.map_or(0.0, |b| thickness(b).v));
-        let sum = ra + rb;
-        let mean = (ta * ra + tb * rb) / sum;
-        (mean, [ra / sum, rb / sum], [(ta - mean) / sum, (tb - mean) / sum])
+        let per_sum = 1.0 / (ra + rb);
+        let mean = (ta * ra + tb * rb) * per_sum;
+        (mean, [ra * per_sum, rb * per_sum], [(ta - mean) * per_sum, (tb - mean) * per_sum])
     }
 
     /// Flow from `a` to `b`.

@@ -3,7 +3,7 @@
 //! With the content's rate `alpha c + past`, the residual (that of [`Reynolds::balance`]) depends on `q` and the motion `x` directly and through the
 //! content. Nothing is allocated once a [`FilmLinear`] has its size.
 
-use super::cavitation::Cavitation;
+use super::cavitation::{Cavitation, Split};
 use super::cells::Cell;
 use super::faces::Face;
 use super::fields::Scalars;
@@ -48,6 +48,9 @@ pub struct FilmLinear {
     pub carry: FilmCarry,
     gap: Vec<f64>,
     cells: Vec<Cell<2>>,
+    splits: Vec<Split>,
+    /// Derivatives of the gap by the motions.
+    modes: Vec<[f64; 4]>,
     cover: Cover,
     covered: bool,
 }
@@ -85,6 +88,8 @@ impl FilmLinear {
             carry: FilmCarry::new(n, motions),
             gap: Vec::with_capacity(n),
             cells: Vec::with_capacity(n),
+            splits: Vec::with_capacity(n),
+            modes: Vec::with_capacity(n),
             cover: Cover::default(),
             covered: false,
         }
@@ -101,17 +106,24 @@ pub(super) fn linearise(
 ) {
     let s = Scalars::of(&film.mesh, &site.input);
     film.cells(site, q, &mut into.gap, &mut into.cells);
+    into.splits.clear();
+    into.splits.extend(q.iter().map(|q| film.cavitation.split(*q)));
+    into.modes.clear();
+    for column in 0..film.mesh.n_phi {
+        let modes = Modes::at(&film.mesh, &site.input, column);
+        into.modes.extend(film.mesh.zetas.iter().map(|zeta| modes.of(*zeta)));
+    }
     if !into.covered || film.cover_turns() {
         film.cover(site.journal_angle_rad, &mut into.cover);
         into.covered = true;
     }
     for (k, cell) in into.cells.iter().enumerate() {
-        into.content[k] = film.cavitation.split(q[k]).fill * cell.content.v;
+        into.content[k] = into.splits[k].fill * cell.content.v;
         let rate = alpha * into.content[k] + past.get(k).copied().unwrap_or(0.0);
         into.residual[k] = rate * s.dx * s.dz;
     }
     into.stencil.clear();
-    let mut work = Assembly { film, site, q, s: &s, into: &mut *into };
+    let mut work = Assembly { film, q, s: &s, into: &mut *into };
     work.storage(alpha);
     film.for_faces(|face| work.face(face));
     work.close_rows();
@@ -121,31 +133,24 @@ pub(super) fn linearise(
 
 struct Assembly<'a> {
     film: &'a Reynolds,
-    site: &'a FilmSite<'a>,
     q: &'a [f64],
     s: &'a Scalars,
     into: &'a mut FilmLinear,
 }
 
 impl Assembly<'_> {
-    fn modes(&self, k: usize) -> [f64; 4] {
-        let (mesh, n_z) = (&self.film.mesh, self.film.mesh.n_z);
-        Modes::at(mesh, &self.site.input, k / n_z).of(mesh.zetas[k % n_z])
-    }
-
     /// Contents and the share of their rates.
     fn storage(&mut self, alpha: f64) {
         let area = self.s.dx * self.s.dz;
         let n = self.q.len();
         for k in 0..n {
-            let (split, content) = (self.film.cavitation.split(self.q[k]), self.into.cells[k].content);
+            let (split, content) = (self.into.splits[k], self.into.cells[k].content);
             let carry = &mut self.into.carry;
             carry.by_rate[k] = area * (1.0 - self.into.cover.share[k]);
             let by_unknown = split.fill_slope * content.v + split.fill * content.d[1] * split.p_slope;
             carry.content_by_unknown[k] = by_unknown;
             self.into.stencil.diagonal[k] = alpha * area * by_unknown;
-            let modes = self.modes(k);
-            for (a, mode) in modes.iter().enumerate().take(self.into.motions) {
+            for (a, mode) in self.into.modes[k].iter().enumerate().take(self.into.motions) {
                 let by_motion = split.fill * content.d[0] * mode;
                 self.into.carry.content_by_motion[a * n + k] = by_motion;
                 self.into.columns[a * n + k] = alpha * area * by_motion;
@@ -157,11 +162,12 @@ impl Assembly<'_> {
     #[inline(always)]
     fn face(&mut self, face: Face) {
         let film = self.film;
-        let flow = film.sides(&face, &self.into.cells, self.q, self.s.speed).flow(face.around, self.s);
+        let splits = |k: usize| self.into.splits[k];
+        let flow = film.sides_of(&face, &self.into.cells, splits, self.s.speed).flow(face.around, self.s);
         let resistance = |c: &Cell<2>| if face.around { c.around } else { c.across };
         let upstream = self.s.speed >= 0.0;
         let by = |k: usize, side: usize, sign: f64| {
-            let (cell, split) = (&self.into.cells[k], film.cavitation.split(self.q[k]));
+            let (cell, split) = (&self.into.cells[k], self.into.splits[k]);
             let local = |slot: usize| {
                 flow.by_resistance[side] * resistance(cell).d[slot]
                     + flow.by_thickness[side] * cell.transport.d[slot]
@@ -174,10 +180,10 @@ impl Assembly<'_> {
         let (a, n) = (face.a, self.q.len());
         self.into.residual[a] += flow.value;
         self.into.stencil.diagonal[a] += qa;
-        let near = self.modes(a);
-        let far = other.map(|(b, (_, hb))| self.modes(b).map(|m| m * hb));
+        let near = self.into.modes[a];
+        let (far, hb) = other.map_or(([0.0; 4], 0.0), |(b, (_, hb))| (self.into.modes[b], hb));
         for m in 0..self.into.motions {
-            let change = ha * near[m] + far.map_or(0.0, |f| f[m]);
+            let change = ha * near[m] + hb * far[m];
             self.into.columns[m * n + a] += change;
             if let Some(b) = face.b {
                 self.into.columns[m * n + b] -= change;
@@ -213,7 +219,7 @@ impl Assembly<'_> {
                     &mut stencil.north,
                 ];
                 sides.into_iter().for_each(|side| side[k] *= 1.0 - m);
-                self.into.stencil.diagonal[k] += m * tie * self.film.cavitation.split(self.q[k]).p_slope;
+                self.into.stencil.diagonal[k] += m * tie * self.into.splits[k].p_slope;
                 (0..self.into.motions).for_each(|a| self.into.columns[a * n + k] *= 1.0 - m);
             }
             if slack && self.q[k] < 0.0 {
@@ -228,7 +234,7 @@ impl Assembly<'_> {
         let (mut loads, mut corner) = ([0.0; 4], [[0.0; 4]; 4]);
         for k in 0..n {
             let (p, slope) = self.film.cavitation.load(self.q[k]);
-            let (modes, contact) = (self.modes(k), self.into.cells[k].contact);
+            let (modes, contact) = (self.into.modes[k], self.into.cells[k].contact);
             for a in 0..d {
                 loads[a] += (p + contact.v) * modes[a] * area;
                 self.into.rows[a * n + k] = slope * modes[a] * area;

@@ -18,11 +18,13 @@ mod adjoint;
 mod balanced;
 mod chain;
 mod finite;
+mod second;
 mod taylor;
 mod transient;
 
 pub use balanced::{Adjoint, Transient};
 pub use finite::{Difference, FiniteDifference};
+pub use second::{HessianProduct, hessian_times};
 pub use taylor::{TaylorRow, taylor_table, verdict};
 
 use crate::dae::{InvalidParameters, SensitiveDae};

@@ -10,6 +10,7 @@
 //!
 //! Ending is data, not an error: see [`Outcome`]. Deliberately not here: units, files, words for reports.
 
+mod curvature;
 mod design;
 mod outcome;
 mod problem;
@@ -19,6 +20,7 @@ mod sqp;
 mod sqp_tests;
 mod state;
 
+pub use curvature::{Curvature, curvature};
 pub use design::{Case, DesignProblem, Evaluated, Limit, Sense};
 pub use outcome::Outcome;
 pub use problem::{ConstrainedProblem, EvaluationError, Slopes, Values};

@@ -1,7 +1,7 @@
 //! Content of `report.json`. Every number that has a unit names it in its key or stands beside it.
 
 use crate::gradient::{EngineName, TaylorRow};
-use crate::optimise::Outcome;
+use crate::optimise::{Curvature, Outcome};
 use crate::orbit::Recording;
 use crate::run::{Cost, IterationEvent};
 use schemars::JsonSchema;
@@ -162,12 +162,16 @@ pub struct ConstraintReport {
 }
 
 /// Optimality of the design.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct KktReport {
     /// Largest of stationarity, complementarity and violation, scaled; none without a simulated design.
     pub residual: Option<f64>,
     /// Wanted residual.
     pub tolerance: f64,
+    /// Curvature along the directions that the limits leave free; none where no optimum was reached. Watts per box squared.
+    pub curvature: Option<Curvature>,
+    /// What it says.
+    pub verdict: Option<String>,
 }
 
 /// Derivatives of one quantity of one case.

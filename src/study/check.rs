@@ -236,6 +236,6 @@ fn too_large(study: &Study) -> Option<String> {
     let bytes = cycles * study.points.len() as f64 * KEPT_CYCLES;
     (bytes > MOST_BYTES).then(|| {
         let (needed, most) = (crate::report::short(bytes * 1e-9), crate::report::short(MOST_BYTES * 1e-9));
-        format!("cells times steps, bearings and operating points need {needed} GB; at most {most} GB (a smaller orbit.memory keeps checkpoints only)")
+        format!("cells times steps, bearings and operating points need {needed} GB; at most {most} GB")
     })
 }

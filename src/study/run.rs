@@ -7,7 +7,7 @@ use super::methods::methods;
 use super::vocabulary::QuantityName;
 use super::{observe, sensitivity};
 use crate::gradient::{GradientTable, taylor_table};
-use crate::optimise::{Evaluated, EvaluationError, Minimum, Outcome, Sense, minimise};
+use crate::optimise::{Evaluated, EvaluationError, Minimum, Outcome, Sense, curvature, minimise};
 use crate::report::{
     Assumption, AtBound, CaseLoss, ConstraintReport, CostReport, Curves, DesignValue, Findings,
     GradientReport, GradientRow, KktReport, ObjectiveReport, OutcomeReport, Provenance, REPORT_FORMAT,
@@ -96,6 +96,10 @@ fn report(
             report.objective.saving_percent = None;
         }
         if minimum.outcome != Outcome::Cancelled {
+            if matches!(minimum.outcome, Outcome::Converged | Outcome::AlmostConverged) {
+                report.kkt.curvature = curvature(&plan.problem, &minimum.x, &minimum.multipliers).ok();
+                report.kkt.verdict = report.kkt.curvature.as_ref().map(|c| c.verdict().to_owned());
+            }
             report.gradient = gradient(study, plan, &minimum.x, &known.optimum, &mut all, context).ok();
         }
         findings.curves = all;
@@ -138,7 +142,12 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
             operating_points: Vec::new(),
         },
         constraints: unknown_constraints(study),
-        kkt: KktReport { residual: None, tolerance: study.optimiser.tolerance },
+        kkt: KktReport {
+            residual: None,
+            tolerance: study.optimiser.tolerance,
+            curvature: None,
+            verdict: None,
+        },
         cylinder_pressure: observe::cylinder(study).0,
         gradient: None,
         orbit: Vec::new(),
