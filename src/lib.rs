@@ -19,7 +19,7 @@
 //! | 4 | [`orbit`] | the settled periodic cycle of a [`dae`] and quantities of it |
 //! | 3 | [`cranktrain`] | cylinder pressure, slider-crank, loads; one bearing as a periodic system |
 //! | 2 | [`film`] | the lubricated gap: Reynolds' equation with cavity, rough surfaces, supply and shapes; short bearing |
-//! | 1 | [`laws`], [`dae`] | pointwise physics: oils, rough surfaces, contact; the ladder of abilities of a periodic implicit system with memory and cycle unknowns |
+//! | 1 | [`laws`], [`dae`] | pointwise physics: oils, rough surfaces, contact; the ladder of abilities of a periodic implicit system with memory and cycle unknowns, and how a model of your own climbs it |
 //! | ground | [`math`], [`units`], [`run`] | algebra; quantities as text; cancel, progress, counted work |
 //!
 //! # The way of the data

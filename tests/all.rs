@@ -11,6 +11,7 @@ mod gradients;
 mod literature;
 mod main_job;
 mod orbits;
+mod own_model;
 mod recording;
 mod sensitivity;
 mod study_physics;

@@ -32,6 +32,7 @@ const ROOMS: &[(&str, &str)] = &[
     ("minijinja", "report"),
     ("jsonc_parser", "study"),
     ("toml", "study"),
+    ("num_dual", "dae"),
 ];
 
 fn sources() -> Vec<(PathBuf, String)> {

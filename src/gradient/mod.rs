@@ -11,6 +11,8 @@
 //! are fewer parameters than quantities, the differences to check the others. All see the periodic start state change
 //! with the design: the differences by settling anew, TRA and ADJ by sweeping on until the carried memory has died out.
 //!
+//! A model of one's own proves its gradient with [`taylor_table`], and its products one by one with [`check_ladder`].
+//!
 //! Quantities are piecewise smooth where cells enter or leave the cavity; the gradient is that of the current piece.
 //! Deliberately not here: which parameters and quantities a study asks for.
 
@@ -18,12 +20,14 @@ mod adjoint;
 mod balanced;
 mod chain;
 mod finite;
+mod ladder;
 mod second;
 mod taylor;
 mod transient;
 
 pub use balanced::{Adjoint, Transient};
 pub use finite::{Difference, FiniteDifference};
+pub use ladder::{LadderRow, check_ladder};
 pub use second::{HessianProduct, hessian_times};
 pub use taylor::{TaylorRow, taylor_table, verdict};
 

@@ -6,6 +6,8 @@ use super::{Orbit, OrbitError, OrbitOptions, Recording};
 use crate::dae::LinearisedDae;
 use crate::run::{Cancel, Cost};
 
+/// A pass before that was farther off than this, in units of change, is a worse guess than the last step continued.
+const NEAR: f64 = 0.05;
 /// Steps between two looks at the cancel flag.
 const CANCEL_EVERY: usize = 16;
 
@@ -22,8 +24,9 @@ pub(super) struct March<'m, M: LinearisedDae> {
     pub last: [Vec<f64>; 2],
     /// Memories of the same steps one pass earlier.
     pub replaced: [Vec<f64>; 2],
-    /// Whether `states` ahead of the march may serve as guesses.
-    warm: bool,
+    /// How far the state that stood ahead of the last step was from its solution, in units of change: whether the states of
+    /// the pass before (or of the similar model) are better guesses than the last step continued.
+    off: f64,
     pub taken: usize,
     /// Steps taken when the last one was walked instead of solved.
     walked: Option<usize>,
@@ -59,7 +62,7 @@ impl<'m, M: LinearisedDae> March<'m, M> {
             replaced: last.clone(),
             last,
             memories,
-            warm,
+            off: if warm { 0.0 } else { f64::INFINITY },
             taken: 0,
             walked: None,
             accelerator: Accelerator::new(recording),
@@ -115,10 +118,12 @@ impl<'m, M: LinearisedDae> March<'m, M> {
         let n = self.taken % count;
         let t_s = n as f64 * self.dt_s;
         let mut z = self.guess(n);
+        let stood = std::mem::take(&mut self.states[n]);
         let from =
             From { z: &self.states[(n + count - 1) % count], last: &self.last[0], before: &self.last[1] };
         let taken = self.stepper.step(self.options.scheme, self.dt_s, t_s, &mut z, from);
         let taken = taken.ok_or_else(|| self.failed(self.taken))?;
+        self.off = self.distance(stood, &z);
         self.states[n] = z;
         self.taken += 1;
         if taken == Taken::Walked {
@@ -153,10 +158,19 @@ impl<'m, M: LinearisedDae> March<'m, M> {
         self.model.memory_change(&pair.map(|(a, b)| a - b).collect::<Vec<f64>>())
     }
 
+    /// Size of the change from the state that stood for a step to its solution.
+    fn distance(&self, stood: Vec<f64>, z: &[f64]) -> f64 {
+        if stood.is_empty() {
+            return f64::INFINITY;
+        }
+        let change: Vec<f64> = z.iter().zip(&stood).map(|(z, old)| z - old).collect();
+        self.model.change(z, &change)
+    }
+
     /// The state of the pass before, or the last step continued.
     fn guess(&self, n: usize) -> Vec<f64> {
         let count = self.options.steps;
-        if (self.warm || self.taken > count) && !self.states[n].is_empty() {
+        if self.off <= NEAR && !self.states[n].is_empty() {
             return self.states[n].clone();
         }
         let mut z = self.states[(n + count - 1) % count].clone();

@@ -300,6 +300,9 @@ impl LinearisedDae for JournalBearing {
         (0..self.layout.motions).for_each(|a| motion[a] = z[n + a] - before[n + a]);
         let share = self.motion_share(z, motion, KEEP_GAP);
         (0..self.layout.motions).for_each(|a| z[n + a] += share * motion[a]);
+        for (z, before) in z[..n].iter_mut().zip(before) {
+            *z = up_to_the_switch(*z, 2.0 * *z - before);
+        }
     }
 
     fn rescue(&self, step: Step, z: &mut [f64]) -> bool {

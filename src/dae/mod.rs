@@ -15,6 +15,113 @@
 //!
 //! Derivatives leave as products with vectors, never as full matrices: `F_p` may have hundreds of columns.
 //! Deliberately not here: how `m'` is discretised (see [`crate::orbit`]).
+//!
+//! # A model of your own
+//!
+//! A small model need not climb by hand: write its equations once as functions of any [`Number`] ([`Equations`]), and [`Dense`]
+//! makes all three steps of the ladder of them, with exact derivatives by dual numbers. Systems of index up to 2 are welcome. The
+//! period must not depend on the parameters. An alternating current circuit, its mean powers, their gradient by all five
+//! engines and two proofs of it:
+//!
+//! ```no_run
+//! use std::error::Error;
+//! use std::f64::consts::TAU;
+//! use stribeck::dae::{Dense, Equations, Instant, Number, Sizes};
+//! use stribeck::gradient::{EngineName, GradientTable, TaylorRow, check_ladder, engine, taylor_table};
+//! use stribeck::orbit::{Orbit, OrbitOptions, Quantity, Reduction, Scheme, settle};
+//! use stribeck::run::Cancel;
+//!
+//! /// A source `V cos(w t)` feeds a capacitor and, beside it, a resistor in series with an inductor.
+//! #[derive(Clone)]
+//! struct Circuit {
+//!     frequency_hz: f64,
+//! }
+//!
+//! impl Equations for Circuit {
+//!     fn sizes(&self) -> Sizes {
+//!         Sizes { states: 3, memories: 2, outputs: 2 }
+//!     }
+//!
+//!     fn period_s(&self) -> f64 {
+//!         1.0 / self.frequency_hz
+//!     }
+//!
+//!     /// Voltage of the capacitor, current through the inductor, current out of the source.
+//!     fn state_scale(&self) -> Vec<f64> {
+//!         vec![10.0, 1.0, 1.0]
+//!     }
+//!
+//!     /// Charge of the capacitor, flux of the inductor.
+//!     fn memory<T: Number>(&self, at: Instant<T>, memory: &mut [T]) {
+//!         let ([u, i, _], [], [_, _, inductance, capacitance]) = at.parts();
+//!         memory.copy_from_slice(&[capacitance * u, inductance * i]);
+//!     }
+//!
+//!     /// Currents at the node, voltages around the branch, and what the source prescribes.
+//!     fn residual<T: Number>(&self, at: Instant<T>, residual: &mut [T]) {
+//!         let ([u, i, source], [charge_rate, flux_rate], [amplitude, resistance, _, _]) = at.parts();
+//!         residual[0] = charge_rate + i - source;
+//!         residual[1] = flux_rate + resistance * i - u;
+//!         residual[2] = u - amplitude * (TAU * self.frequency_hz * at.t_s).cos();
+//!     }
+//!
+//!     /// Power into the resistor, power out of the source.
+//!     fn output<T: Number>(&self, at: Instant<T>, output: &mut [T]) {
+//!         let ([u, i, source], [_, _], [_, resistance, _, _]) = at.parts();
+//!         output.copy_from_slice(&[resistance * i * i, u * source]);
+//!     }
+//! }
+//!
+//! /// The settled cycle, the gradient of its powers by each engine, and how the remainders of the last one fall.
+//! struct Found {
+//!     orbit: Orbit,
+//!     tables: Vec<GradientTable>,
+//!     checks: Vec<Vec<TaylorRow>>,
+//! }
+//!
+//! fn five_engines() -> Result<Found, Box<dyn Error>> {
+//!     // 12 V at 50 Hz, 4 ohm, 20 mH, 100 uF.
+//!     let model = Dense::new(Circuit { frequency_hz: 50.0 }, &[12.0, 4.0, 20e-3, 100e-6])?;
+//!     let cancel = Cancel::default();
+//!     let options = OrbitOptions {
+//!         steps: 200,
+//!         scheme: Scheme::Bdf2,
+//!         periodicity_tolerance: 1e-13,
+//!         max_cycles: 100,
+//!         memory_bytes: 1 << 30,
+//!     };
+//!     let orbit = settle(&model, &options, None, &cancel)?;
+//!     let mean = |output| Quantity { output, reduction: Reduction::Mean };
+//!     let powers = [mean(0), mean(1)];
+//!     println!("{} W, {} W", orbit.value(&powers[0]), orbit.value(&powers[1]));
+//!     // One row per power, one column per parameter, by FW, BW, CEN, TRA and ADJ.
+//!     let mut tables = Vec::new();
+//!     for name in EngineName::ALL {
+//!         let table = engine(name, 1e-6).gradient(&model, &orbit, &options, &powers, &cancel)?;
+//!         println!("{}: {:?}", name.as_str(), table.rows);
+//!         tables.push(table);
+//!     }
+//!     // The remainder of the last one falls with order 2 along this direction, if it is right.
+//!     let along = [1.0, -0.5, 0.8, 0.3];
+//!     let checks = taylor_table(&model, &orbit, &options, &powers, &tables[4], &along, (1e-2, 5), &cancel)?;
+//!     for row in check_ladder(&model, &orbit)? {
+//!         assert!(row.holds(), "{row:?}");
+//!     }
+//!     Ok(Found { orbit, tables, checks })
+//! }
+//! ```
+//!
+//! The lines are those of `tests/own_model.rs`, where the result is held against its closed form. A ladder written by hand
+//! (a sparse or a large model) is checked product by product with [`crate::gradient::check_ladder`].
+
+mod dense;
+mod differentiate;
+mod equations;
+mod lu;
+
+pub use dense::Dense;
+pub use differentiate::{DenseFactors, DensePoint, DenseRoom};
+pub use equations::{Equations, Instant, Number, Sizes};
 
 use crate::math::Singular;
 use thiserror::Error;
