@@ -212,6 +212,45 @@ fn mistakes_in_the_physics_have_their_words_too() {
     insta::assert_snapshot!(list.join("\n"));
 }
 
+/// Mistakes in a comparison: what stands in front of `[oil]`.
+const COMPARISON: &[&str] = &[
+    "[comparison]\nengine = [\"ADJ\"]\nperturbation = 1e-6\n",
+    "[comparison]\nengines = [\"ADJ\", \"FD\"]\n",
+    "[comparison]\nengines = []\nparameter_counts = []\n",
+    "[comparison]\nengines = [\"CEN\", \"ADJ\", \"CEN\"]\nperturbations = [1e-4, 1e-4, 0.5, -1e-3]\n",
+    "[comparison]\nengines = [\"TRA\", \"ADJ\"]\nperturbations = [1e-4]\n",
+    "[comparison]\nperturbations = []\n",
+    "[comparison]\nperturbations = 1e-4\n",
+    "[comparison]\nparameter_counts = [0, 2, 2, 5, -1]\n",
+    "[comparison]\nparameter_counts = [0, 2, 2, 5]\n",
+    "comparison = true\n",
+    "[comparison]\n[gradient]\nengine = \"TRA\"\nperturbation = 0\n",
+    "[comparison]\n[optimiser]\nmax_iterations = 3\naggregate_sharpness = 1\n",
+    "[comparison]\n[characteristic]\nvary = \"speed\"\nspeeds = [\"1000 rpm\"]\n",
+];
+
+#[test]
+fn mistakes_in_a_comparison_have_their_words() {
+    let main = main_text();
+    let one = |to: &&str| {
+        let text = match to.starts_with('[') {
+            true => main.replacen("[oil]", &format!("{to}[oil]"), 1),
+            false => format!("{to}{main}"),
+        };
+        let list = errors(&merged_head(&text)).faults;
+        let list: Vec<String> = list.iter().map(|f| format!("    {}: {}", f.path, f.message)).collect();
+        format!("{to:?}\n{}", list.join("\n"))
+    };
+    let list: Vec<String> = COMPARISON.iter().map(one).collect();
+    insta::assert_snapshot!(list.join("\n"));
+}
+
+/// The text with sections put together, keys in front of the first section kept.
+fn merged_head(text: &str) -> String {
+    let head: String = text.lines().take_while(|l| !l.starts_with('[')).map(|l| format!("{l}\n")).collect();
+    format!("{head}{}", merged(&text[head.len()..]))
+}
+
 #[test]
 fn json_is_read_as_strictly_as_toml() {
     let read = |text: &str| Study::read(text, Format::Json, None).err().unwrap();

@@ -169,3 +169,54 @@ fn ctrl_c_writes_what_is_known() {
     }
     panic!("the best design so far is never reported");
 }
+
+#[test]
+fn gradient_check_says_what_it_found_and_counts_weakly_active_cells() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = study(&folder, &[QUICK]);
+    let check = stribeck().arg("gradient").arg(&file).arg("--check").assert().code(0);
+    let text = String::from_utf8_lossy(&check.get_output().stdout).into_owned();
+    for words in [
+        "TRA against ADJ",
+        "best CEN",
+        "mean-friction-loss: exact: TRA = ADJ",
+        "weakly active cells: ",
+        "change behind",
+        "error against ADJ over the perturbation",
+    ] {
+        assert!(text.contains(words), "{words} in {text}");
+    }
+    let out = folder.path().join("check.json");
+    let json =
+        stribeck().arg("gradient").arg(&file).args(["--check", "--json", "--out"]).arg(&out).assert().code(0);
+    let json: serde_json::Value = serde_json::from_slice(&json.get_output().stdout).unwrap();
+    assert_eq!(json, serde_json::from_slice::<serde_json::Value>(&std::fs::read(&out).unwrap()).unwrap());
+    assert!(json[0]["weakly_active_cells"].is_u64());
+    assert_eq!(json[0]["quantities"][0]["finding"], "exact");
+    assert_eq!(json[0]["quantities"][0]["differences"].as_array().unwrap().len(), 3 * 6);
+    let plain =
+        stribeck().arg("gradient").arg(&file).arg("--json").assert().success().get_output().stdout.clone();
+    let plain: serde_json::Value = serde_json::from_slice(&plain).unwrap();
+    assert_eq!(plain[0]["weakly_active_cells"], json[0]["weakly_active_cells"]);
+    stribeck().arg("gradient").arg(&file).args(["--check", "--engine", "all"]).assert().code(2);
+    let help = stribeck().arg("--help").assert().success().get_output().stdout.clone();
+    assert!(String::from_utf8_lossy(&help).contains("9 a checked gradient is wrong"));
+}
+
+#[test]
+fn run_compares_engines_if_the_study_asks_for_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("answer");
+    let comparison = "[comparison]\nperturbations = [1e-5, 1e-6]\nparameter_counts = [2]\n[oil]";
+    let file = study(&folder, &[QUICK, ("[oil]", comparison)]);
+    let run = stribeck().arg("run").arg(&file).arg("--out").arg(&out).assert().code(0);
+    let text = String::from_utf8_lossy(&run.get_output().stdout).into_owned();
+    for words in ["exact: TRA = ADJ", "2 parameters: CEN / ADJ:", "time / simulation", "report.html"] {
+        assert!(text.contains(words), "{words} in {text}");
+    }
+    for name in
+        ["report.html", "report.json", "gradients.csv", "errors.csv", "taylor.csv", "cost.csv", "timing.csv"]
+    {
+        assert!(out.join(name).metadata().unwrap().len() > 100, "{name}");
+    }
+}

@@ -200,7 +200,10 @@ fn study(case: &Case) -> Study {
         .iter()
         .map(|p| {
             let parts: Vec<&str> = p.split('|').collect();
-            format!("[[parameters]]\nname = \"{}\"\nlower = \"{}\"\nupper = \"{}\"\n", parts[0], parts[1], parts[2])
+            format!(
+                "[[parameters]]\nname = \"{}\"\nlower = \"{}\"\nupper = \"{}\"\n",
+                parts[0], parts[1], parts[2]
+            )
         })
         .collect();
     let text = merged(&format!("{text}\n{}{supply}{parameters}{}", case.sections, case.limits));
@@ -217,7 +220,10 @@ fn every_kind_of_parameter_has_exact_gradients_in_every_kind_of_case() {
         let proven = quietly(|run| prove(&study, &[1e-4, 1e-5, 1e-6, 1e-7], run)).unwrap();
         assert_eq!(proven.len(), study.points.len());
         for q in proven.iter().flat_map(|p| &p.quantities) {
-            println!("{}: {}: {:?}, TRA - ADJ {:.1e}: {}", case.name, q.quantity, q.finding, q.mismatch, q.verdict);
+            println!(
+                "{}: {}: {:?}, TRA - ADJ {:.1e}: {}",
+                case.name, q.quantity, q.finding, q.mismatch, q.verdict
+            );
             assert!(q.mismatch < 1e-9, "{}: {}: {:.1e}", case.name, q.quantity, q.mismatch);
             match q.finding {
                 Finding::Exact => exact += 1,

@@ -2,13 +2,13 @@
 
 use super::progress::Bars;
 use super::{
-    CheckArguments, EXIT_FILE, EXIT_INCOMPLETE, EXIT_STUDY, GradientArguments, RunArguments, SchemaArguments,
-    exit_code, faults, tables,
+    CheckArguments, EXIT_FILE, EXIT_INCOMPLETE, EXIT_STUDY, EXIT_WRONG_GRADIENT, GradientArguments,
+    RunArguments, SchemaArguments, exit_code, faults, proof_tables, tables,
 };
 use crate::optimise::EvaluationError;
-use crate::report::{self, Characteristic, CharacteristicStatus};
+use crate::report::{self, Characteristic, CharacteristicStatus, Comparison, ComparisonStatus};
 use crate::run::{Cancel, RunContext};
-use crate::study::{Format, Study, StudyErrors, Sweep, compare_engines};
+use crate::study::{Format, Study, StudyErrors, Sweep, compare, compare_engines, prove};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -89,6 +89,10 @@ pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
         bars.finish();
         return tabulated(&found, &folder, a.json);
     }
+    if let Some(found) = compare(&study, context) {
+        bars.finish();
+        return compared(&found, &folder, a.json);
+    }
     let findings = crate::study::run(&study, context);
     bars.finish();
     report::write_folder(&findings, &folder).map_err(|e| Stop::File(folder.clone(), e))?;
@@ -117,6 +121,23 @@ fn tabulated(found: &Characteristic, folder: &Path, json: bool) -> Result<u8, St
     })
 }
 
+/// Writes and prints a comparison.
+fn compared(found: &Comparison, folder: &Path, json: bool) -> Result<u8, Stop> {
+    report::write_comparison(found, folder).map_err(|e| Stop::File(folder.to_owned(), e))?;
+    if json {
+        put(&(serde_json::to_string_pretty(found).unwrap_or_default() + "\n"));
+    } else {
+        put(&proof_tables::comparison(found));
+        put(&format!("report: {}\n", folder.join("report.html").display()));
+    }
+    Ok(match found.status {
+        ComparisonStatus::Cancelled => exit_code(crate::optimise::Outcome::Cancelled),
+        _ if found.any_wrong() => EXIT_WRONG_GRADIENT,
+        ComparisonStatus::Complete => 0,
+        ComparisonStatus::Incomplete => EXIT_INCOMPLETE,
+    })
+}
+
 pub(super) fn check(a: &CheckArguments) -> Result<u8, Stop> {
     let study = read(&a.file, a.json)?;
     if a.json {
@@ -140,6 +161,9 @@ pub(super) fn gradient(a: &GradientArguments) -> Result<u8, Stop> {
         eprintln!("error: {}: a study that tabulates a characteristic has no gradient", a.file.display());
         return Ok(EXIT_STUDY);
     }
+    if a.check {
+        return checked(&study, a);
+    }
     let engines = a.engine.map_or_else(|| vec![study.engine], super::EngineChoice::engines);
     let sweep = if a.sweep { Sweep::wide() } else { Sweep(vec![study.perturbation]) };
     let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(0));
@@ -153,4 +177,19 @@ pub(super) fn gradient(a: &GradientArguments) -> Result<u8, Stop> {
     }
     put(&if a.json { json } else { tables::engines(&comparisons) });
     Ok(0)
+}
+
+/// Proves the gradient and says what was found.
+fn checked(study: &Study, a: &GradientArguments) -> Result<u8, Stop> {
+    let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(0));
+    let context = RunContext { cancel: &cancel, progress: &bars };
+    let result = prove(study, &study.check_perturbations(), context);
+    bars.finish();
+    let cases = result.map_err(Stop::Simulation)?;
+    let json = serde_json::to_string_pretty(&cases).unwrap_or_default() + "\n";
+    if let Some(path) = &a.out {
+        std::fs::write(path, &json).map_err(|e| Stop::File(path.clone(), e))?;
+    }
+    put(&if a.json { json } else { proof_tables::proof(&cases) });
+    Ok(if cases.iter().any(|c| c.any_wrong()) { EXIT_WRONG_GRADIENT } else { 0 })
 }

@@ -6,6 +6,7 @@
 mod commands;
 mod faults;
 mod progress;
+mod proof_tables;
 mod tables;
 
 use crate::gradient::EngineName;
@@ -19,8 +20,11 @@ pub const EXIT_FILE: u8 = 1;
 /// Exit code for a study (or command line) with mistakes.
 pub const EXIT_STUDY: u8 = 2;
 
-/// Exit code for a characteristic of which rows are missing.
+/// Exit code for a characteristic of which rows are missing, or a comparison of which something is.
 pub const EXIT_INCOMPLETE: u8 = 8;
+
+/// Exit code for a gradient that is wrong.
+pub const EXIT_WRONG_GRADIENT: u8 = 9;
 
 /// Exit code of an outcome: 0 only for a converged design.
 pub fn exit_code(outcome: Outcome) -> u8 {
@@ -41,7 +45,7 @@ pub fn exit_code(outcome: Outcome) -> u8 {
     name = "stribeck",
     version,
     after_help = "Exit codes: 0 converged, 1 file error, 2 mistakes in the study or command line, \
-3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 8 rows of a characteristic are missing, 130 cancelled."
+3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 8 rows of a characteristic or parts of a comparison are missing, 9 a checked gradient is wrong, 130 cancelled."
 )]
 struct Arguments {
     /// Threads to use [default: one per core]. The numbers do not depend on it.
@@ -53,13 +57,13 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Finds the design with the least loss (or tabulates a characteristic) and writes a report.
+    /// Finds the design with the least loss (or tabulates a characteristic, or compares the gradient engines) and writes a report.
     Run(RunArguments),
     /// Checks a study and prints it with every default written out.
     Check(CheckArguments),
     /// Prints the JSON Schema of the study file, or of the report.
     Schema(SchemaArguments),
-    /// Computes the gradient at the start design, with one engine or all five side by side.
+    /// Computes the gradient at the start design, with one engine or all five side by side, or checks it.
     Gradient(GradientArguments),
 }
 
@@ -67,7 +71,7 @@ enum Command {
 struct RunArguments {
     /// Study file, TOML or JSON.
     file: PathBuf,
-    /// Folder for report.html, report.json and orbit.csv [default: out/<name of the study file>].
+    /// Folder for report.html, report.json and CSV files [default: out/<name of the study file>].
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Print the report as JSON instead of a table.
@@ -101,6 +105,10 @@ struct GradientArguments {
     /// Let the finite differences try perturbations from 1e-3 to 1e-8.
     #[arg(long)]
     sweep: bool,
+    /// Check the gradient: TRA against ADJ, differences from 1e-3 to 1e-8 (or those of [comparison]), Taylor remainders both
+    /// ways; says whether it is exact, at a kink, noisy or wrong. Ends with exit code 9 if it is wrong.
+    #[arg(long, conflicts_with_all = ["engine", "sweep"])]
+    check: bool,
     /// Print the comparison as JSON.
     #[arg(long)]
     json: bool,

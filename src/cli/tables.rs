@@ -6,7 +6,7 @@ use crate::study::{EngineComparison, EngineRow};
 use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 use owo_colors::OwoColorize;
 
-fn table(head: &[&str]) -> Table {
+pub(super) fn table(head: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_style(TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─')));
     table.set_header(head.to_vec());
@@ -186,6 +186,7 @@ pub(super) fn engines(comparisons: &[EngineComparison]) -> String {
             ]);
         }
         text += &format!("cost of all quantities together\n{cost}\n\n");
+        text += &format!("weakly active cells: {} over all steps\n\n", c.weakly_active_cells);
     }
     text
 }

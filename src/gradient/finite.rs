@@ -62,7 +62,7 @@ impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
         cancel: &Cancel,
     ) -> Result<GradientTable, GradientError> {
         let p = &at.parameters;
-        let varied = p.len() - model.cycle().map_or(0, |c| c.unknowns());
+        let varied = super::varied(model, at);
         let mut table = GradientTable {
             rows: vec![vec![0.0; varied]; of.len()],
             fields: Vec::new(),

@@ -35,30 +35,61 @@ pub fn taylor_table<M: SensitiveDae>(
     of: &[Quantity],
     gradient: &GradientTable,
     direction: &[f64],
-    (first, count): (f64, usize),
+    lengths: (f64, usize),
     cancel: &Cancel,
 ) -> Result<Vec<Vec<TaylorRow>>, GradientError> {
+    let sides = walk(model, at, options, of, gradient, direction, lengths, cancel)?;
+    Ok(sides.into_iter().map(|side| side.table).collect())
+}
+
+/// What was found along a direction.
+pub(super) struct Walk {
+    /// Taylor table.
+    pub table: Vec<TaylorRow>,
+    /// Change of the quantity over the step, by the gradient.
+    pub expected: f64,
+    /// The same, found with the finest step.
+    pub found: f64,
+}
+
+/// Walks along a direction; one [`Walk`] per quantity.
+#[allow(clippy::too_many_arguments)] // As above.
+pub(super) fn walk<M: SensitiveDae>(
+    model: &M,
+    at: &Orbit,
+    options: &OrbitOptions,
+    of: &[Quantity],
+    gradient: &GradientTable,
+    direction: &[f64],
+    (first, count): (f64, usize),
+    cancel: &Cancel,
+) -> Result<Vec<Walk>, GradientError> {
     let p = &at.parameters;
     let smallest = first / (1u64 << count.max(1)) as f64;
     let options = &tight(options, smallest);
     let base = settle(model, options, Some(at), cancel)?;
     let d: Vec<f64> = direction.iter().enumerate().map(|(j, d)| model.parameter_scale(j) * d).collect();
-    let mut tables: Vec<Vec<TaylorRow>> = vec![Vec::new(); of.len()];
+    let slope = |row: &Vec<f64>| row.iter().zip(&d).map(|(g, d)| g * d).sum::<f64>();
+    let start = |row| Walk { table: Vec::new(), expected: slope(row), found: 0.0 };
+    let mut walks: Vec<Walk> = gradient.rows.iter().map(start).collect();
     for k in 0..count {
         let step = first / (1u64 << k) as f64;
         let shifted: Vec<f64> =
             p.iter().enumerate().map(|(j, p)| p + d.get(j).map_or(0.0, |d| step * d)).collect();
         let orbit = settle(&model.with_parameters(&shifted)?, options, Some(at), cancel)?;
-        for ((table, quantity), row) in tables.iter_mut().zip(of).zip(&gradient.rows) {
+        for (walk, quantity) in walks.iter_mut().zip(of) {
             let here = base.value(quantity);
             let change = orbit.value(quantity) - here;
-            let slope: f64 = row.iter().zip(&d).map(|(g, d)| g * d).sum();
-            let remainder = (change - step * slope).abs() / here.abs();
-            let order = table.last().map(|last: &TaylorRow| (last.remainder / remainder).log2());
-            table.push(TaylorRow { step, change: change.abs() / here.abs(), remainder, order });
+            // What is zero and stays so has no size to be measured by.
+            let size = if here == 0.0 { 1.0 } else { here.abs() };
+            let remainder = (change - step * walk.expected).abs() / size;
+            let order = walk.table.last().map(|last| (last.remainder / remainder).log2());
+            let order = order.filter(|o| o.is_finite());
+            walk.table.push(TaylorRow { step, change: change.abs() / size, remainder, order });
+            walk.found = change / step;
         }
     }
-    Ok(tables)
+    Ok(walks)
 }
 
 /// What a Taylor table says, in words. The finest steps decide: larger ones may cross a kink on their way.
@@ -84,6 +115,11 @@ pub fn verdict(table: &[TaylorRow]) -> String {
     }
     let listed: Vec<String> = orders.iter().map(|o| format!("{o:.1}")).collect();
     format!("kink or error: the remainder falls with orders {}", listed.join(", "))
+}
+
+/// Whether the remainders fall as those of a right gradient.
+pub(super) fn falls(table: &[TaylorRow]) -> bool {
+    verdict(table).starts_with("exact")
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! floor above; here they are written. Deliberately not here: how the numbers came about.
 
 mod characteristic;
+mod comparison;
 mod csv_file;
 mod data;
 mod figures;
@@ -15,6 +16,11 @@ mod vtk;
 pub use characteristic::{
     CHARACTERISTIC_FORMAT, Characteristic, CharacteristicColumn, CharacteristicStatus, CharacteristicTable,
     characteristic_csv, characteristic_html, write_characteristic,
+};
+pub use comparison::{
+    BestError, COMPARISON_FORMAT, CaseTiming, ComparedCase, Comparison, ComparisonStatus, DifferenceRow,
+    EngineCost, EngineTime, ProvenCase, ProvenQuantity, SpeedUp, Timing, comparison_csv, comparison_html,
+    timing_csv, write_comparison,
 };
 pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;

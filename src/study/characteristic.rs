@@ -40,6 +40,7 @@ pub(super) fn refuse_search(file: &StudyFile, faults: &mut Faults) -> bool {
     faults.unused(&file.constraints, "constraints", why);
     faults.unused(&file.gradient, "gradient", why);
     faults.unused(&file.optimiser, "optimiser", why);
+    faults.unused(&file.comparison, "comparison", why);
     true
 }
 

@@ -2,12 +2,15 @@
 
 use super::bearings::{Bearings, Frame};
 use super::characteristic::CharacteristicPlan;
+use super::comparison::ComparisonPlan;
 use super::document::{Format, parse};
 use super::faults::{Fault, Faults, StudyErrors, line_of, without_nulls};
 use super::file::{FilmModelName, StudyFile};
 use super::oil::OilUse;
 use super::plans::{BearingPlan, ConstraintPlan, FilmPlan, OilPlan, OperatingPoint, ParameterPlan};
-use super::{FORMAT, bearings, characteristic, constraints, film, heat, loads, oil, parameters, sections};
+use super::{
+    FORMAT, bearings, characteristic, comparison, constraints, film, heat, loads, oil, parameters, sections,
+};
 use crate::cranktrain::{BearingParameter, Cylinder, VeeEngine};
 use crate::gradient::EngineName;
 use crate::optimise::SqpOptions;
@@ -53,6 +56,7 @@ pub struct Study {
     /// Sharpness of smooth extrema.
     pub sharpness: f64,
     pub(super) characteristic: Option<CharacteristicPlan>,
+    pub(super) comparison: Option<ComparisonPlan>,
     pub(super) cylinder: Option<Cylinder>,
     pub(super) vee: Option<VeeEngine>,
 }
@@ -149,7 +153,8 @@ fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Optio
     if faults.any() {
         return None;
     }
-    let Search { points, parameters, constraints, engine, perturbation, optimiser, sharpness } = search?;
+    let Search { points, parameters, constraints, engine, perturbation, optimiser, sharpness, comparison } =
+        search?;
     let mut study = Study {
         hash: String::new(),
         bearings: named.into_iter().map(|(_, plan)| plan).collect::<Option<_>>()?,
@@ -157,6 +162,7 @@ fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Optio
         parameters,
         constraints,
         characteristic,
+        comparison,
         film: film?,
         orbit: orbit?,
         oil: oil?,
@@ -186,6 +192,7 @@ struct Search {
     perturbation: f64,
     optimiser: SqpOptions,
     sharpness: f64,
+    comparison: Option<ComparisonPlan>,
 }
 
 impl Search {
@@ -196,9 +203,10 @@ impl Search {
             parameters: Vec::new(),
             constraints: Vec::new(),
             engine: EngineName::Adj,
-            perturbation: 1e-6,
+            perturbation: sections::PERTURBATION,
             optimiser: SqpOptions::default(),
             sharpness: sections::SHARPNESS,
+            comparison: None,
         }
     }
 }
@@ -210,10 +218,18 @@ fn search(
     faults: &mut Faults,
 ) -> Option<Search> {
     let points = sections::points(file, faults);
+    let before = faults.count();
     let parameters = parameters::parameters(file, named, film, faults);
+    let all = parameters.as_ref().filter(|_| faults.count() == before).map(Vec::len);
     let constraints = constraints::constraints(file, named, faults);
-    let gradient = sections::gradient(file, faults);
-    let optimiser = sections::optimiser(file, faults);
+    let comparison = comparison::comparison(file, all, faults);
+    let (gradient, optimiser) = match file.comparison.is_absent() {
+        true => (sections::gradient(file, faults), sections::optimiser(file, faults)),
+        false => {
+            let perturbation = comparison::perturbation(file, faults);
+            (perturbation.map(|eps| (EngineName::Adj, eps)), comparison::sharpness(file, faults))
+        }
+    };
     let ((engine, perturbation), (optimiser, sharpness)) = (gradient?, optimiser?);
     Some(Search {
         points: points?,
@@ -223,6 +239,7 @@ fn search(
         perturbation,
         optimiser,
         sharpness,
+        comparison,
     })
 }
 

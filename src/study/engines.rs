@@ -59,6 +59,8 @@ pub struct EngineComparison {
     pub parameters: Vec<String>,
     /// Units of the values.
     pub units: Vec<Vec<String>>,
+    /// Cells at which the film has a kink, over all steps.
+    pub weakly_active_cells: usize,
     /// Engines.
     pub rows: Vec<EngineRow>,
 }
@@ -108,7 +110,7 @@ impl Bench<'_> {
             for perturbation in steps {
                 rows.push(match self.compute(&model, name, perturbation.unwrap_or(0.0)) {
                     Ok((table, time_ratio)) => EngineRow {
-                        values: shown(&table, quantities, &parameters),
+                        values: shown(&table.rows, quantities, &parameters),
                         error: differences(&table, &reference, &sizes),
                         sweeps: table.sweeps,
                         cost: table.cost,
@@ -129,6 +131,7 @@ impl Bench<'_> {
             quantities: quantities.iter().map(|q| q.key().to_owned()).collect(),
             parameters: parameters.iter().map(|p| p.name.clone()).collect(),
             units: quantities.iter().map(|q| parameters.iter().map(|p| unit(q, p)).collect()).collect(),
+            weakly_active_cells: super::observe::weakly_active(&model, self.orbit),
             rows,
         })
     }
@@ -175,12 +178,16 @@ impl EngineRow {
 }
 
 /// Derivatives in the units of reports.
-fn shown(table: &GradientTable, quantities: &[QuantityName], parameters: &[&ParameterPlan]) -> Vec<Vec<f64>> {
+pub(super) fn shown(
+    rows: &[Vec<f64>],
+    quantities: &[QuantityName],
+    parameters: &[&ParameterPlan],
+) -> Vec<Vec<f64>> {
     let row = |(row, quantity): (&Vec<f64>, &QuantityName)| {
         let (_, scale) = quantity.unit();
         row.iter().zip(parameters).map(|(g, p)| g / scale * p.variable.scale.0).collect()
     };
-    table.rows.iter().zip(quantities).map(row).collect()
+    rows.iter().zip(quantities).map(row).collect()
 }
 
 /// What a change of a parameter is measured by: its value, or the width of its box where it is zero.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! text (TOML or JSON) --document--> values with places --file--> StudyFile --check--> Study (SI, defaults written in)
-//! Study --build--> DesignProblem --run--> Report
+//! Study --build--> DesignProblem --run--> Report          (or --compare--> Comparison, --characterise--> Characteristic)
 //! ```
 //!
 //! Reading never stops at the first mistake: every value that does not fit is kept as [`Given::Wrong`], and the check
@@ -13,6 +13,8 @@ mod build;
 mod characterise;
 mod characteristic;
 mod check;
+mod compare;
+mod comparison;
 mod constraints;
 mod document;
 mod engines;
@@ -30,6 +32,7 @@ mod observe;
 mod oil;
 mod parameters;
 mod plans;
+mod prove;
 mod rheology;
 mod roughness;
 mod run;
@@ -46,6 +49,7 @@ mod vocabulary;
 pub use build::{CaseLabel, LimitLabel, Plan, plan};
 pub use characterise::characterise;
 pub use check::Study;
+pub use compare::compare;
 pub use document::Format;
 pub use engines::{EngineComparison, EngineRow, Sweep, compare_engines};
 
@@ -56,6 +60,7 @@ pub use plans::{
     BearingPlan, ConstraintPlan, FilmPlan, HeatPlan, OilPlan, OperatingPoint, ParameterPlan, RoughnessPlan,
     SupplyPlan,
 };
+pub use prove::prove;
 pub use run::run;
 pub use schema::schema;
 

@@ -36,7 +36,7 @@ pub fn schema() -> Value {
             object["required"] = json!(keys);
         }
     }
-    // A study searches a design or tabulates a characteristic.
+    // A study searches a design (or compares engines at its start), or tabulates a characteristic.
     schema["anyOf"] =
         json!([{ "required": ["objective", "parameters"] }, { "required": ["characteristic"] }]);
     schema["properties"]["format"]["const"] = json!(super::FORMAT);

@@ -13,6 +13,8 @@ use crate::orbit::{OrbitOptions, Scheme};
 
 /// Default sharpness of smooth extrema.
 pub(super) const SHARPNESS: f64 = 200.0;
+/// Default relative perturbation of the finite differences.
+pub(super) const PERTURBATION: f64 = 1e-6;
 
 pub(super) fn orbit_options(o: &mut OrbitFile, faults: &mut Faults) -> OrbitOptions {
     faults.unknown::<OrbitFile>(&o.unknown, "orbit");
@@ -104,7 +106,7 @@ pub(super) fn gradient(file: &mut StudyFile, faults: &mut Faults) -> Option<(Eng
     let g = faults.section(&mut file.gradient, "gradient")?;
     faults.unknown::<GradientFile>(&g.unknown, "gradient");
     let engine = faults.or(&mut g.engine, "gradient.engine", EngineName::Adj);
-    let perturbation = faults.or(&mut g.perturbation, "gradient.perturbation", 1e-6);
+    let perturbation = faults.or(&mut g.perturbation, "gradient.perturbation", PERTURBATION);
     faults.range(
         Some(perturbation),
         "gradient.perturbation",

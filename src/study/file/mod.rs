@@ -29,6 +29,7 @@ macro_rules! words {
 
 mod bearing;
 mod characteristic;
+mod comparison;
 mod film;
 mod machine;
 mod oil;
@@ -37,6 +38,7 @@ mod surface;
 
 pub use bearing::{BearingFile, BearingKind, HeatBalanceFile, OpeningFile, OpeningKind, SupplyFile};
 pub use characteristic::{CharacteristicFile, VaryName};
+pub use comparison::ComparisonFile;
 pub use film::{CavitationName, CavityShearName, FilmFile, FilmModelName, OrbitFile, SchemeName};
 pub use machine::{CylinderPressureFile, MachineFile, PressureSource};
 pub use oil::{
@@ -95,6 +97,8 @@ section! {
         orbit: OrbitFile,
         /// Tabulate what the bearings do over a varied quantity instead of searching a design.
         characteristic: CharacteristicFile,
+        /// Compare the gradient engines at the start design instead of searching a better one.
+        comparison: ComparisonFile,
         /// What is minimised, at which operating points. Like all below not with a characteristic.
         objective: ObjectiveFile,
         /// Design parameters with their box.
