@@ -242,9 +242,9 @@ impl Evidence<'_> {
         let confirmed = self.best().is_none_or(|b| b.0 <= CEN_AGREES);
         (one_side || confirmed).then(|| {
             let words = format!(
-                "kink: {agree}, but along the test direction the slope ahead is {:.4} and behind {:.4} times that of ADJ",
-                ahead / expected,
-                behind / expected
+                "kink: {agree}, but along the test direction the slope ahead is off that of ADJ by {:.0e} and the one behind by {:.0e}",
+                (ahead / expected - 1.0).abs(),
+                (behind / expected - 1.0).abs()
             );
             verdict(Finding::Kink, words, None)
         })

@@ -100,7 +100,8 @@ pub fn check_tables<M: SensitiveDae>(
     let scales: Vec<f64> = (0..varied(model, at)).map(|j| model.parameter_scale(j)).collect();
     let quantities = along(1.0)?.into_iter().zip(along(-1.0)?).enumerate().map(|(k, (ahead, behind))| {
         let (value, walks) = (at.value(&of[k]), [ahead, behind]);
-        let size = row_size(&adj, k, &scales, value);
+        let largest = at.outputs.iter().map(|y| y[of[k].output].abs()).fold(0.0, f64::max);
+        let size = row_size(&adj, k, &scales, largest);
         let mut seen: Vec<Seen> =
             steps.iter().filter_map(|s| seen(s, k, &adj.rows[k], &scales, size)).collect();
         seen.sort_by(|a, b| b.perturbation.total_cmp(&a.perturbation));

@@ -11,6 +11,9 @@ use crate::run::{Cancel, Cost};
 use rayon::prelude::*;
 
 /// Forward and backward differences of all quantities by all parameters at one perturbation.
+/// Share of the largest momentary value below which the derivatives of a quantity are small.
+const CANCELLED: f64 = 1e-4;
+
 #[derive(Debug, Clone, PartialEq)]
 pub struct DifferenceStep {
     /// Relative perturbation.
@@ -111,13 +114,10 @@ pub(super) fn miss(a: &[f64], b: &[f64], scales: &[f64], size: f64) -> (f64, usi
     each.enumerate().fold((0.0, 0), |worst, (j, e)| if e > worst.0 || e.is_nan() { (e, j) } else { worst })
 }
 
-/// Largest elasticity of a row; the quantity's own size where nothing moves it.
-pub(super) fn row_size(table: &GradientTable, quantity: usize, scales: &[f64], value: f64) -> f64 {
+/// Largest elasticity of a row, but no less than a share of the largest momentary value: a mean that cancels to nothing (the
+/// net flow of a film without supply) has derivatives of rounding only, which are to be told from errors.
+pub(super) fn row_size(table: &GradientTable, quantity: usize, scales: &[f64], largest: f64) -> f64 {
     let row = table.rows[quantity].iter().zip(scales);
-    let size = row.fold(0.0f64, |m, (g, s)| m.max((g * s).abs()));
-    match (size > 0.0, value.abs() > 0.0) {
-        (true, _) => size,
-        (false, true) => value.abs(),
-        (false, false) => 1.0,
-    }
+    let size = row.fold(CANCELLED * largest, |m, (g, s)| m.max((g * s).abs()));
+    if size > 0.0 { size } else { 1.0 }
 }
