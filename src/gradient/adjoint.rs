@@ -38,6 +38,7 @@ pub(super) fn adjoint<M: SensitiveDae>(
     let closure = sweep.chain.close(Way::Backward, &mut carriers, &mut packed)?;
     sweep.back.heads.unpack(&packed);
     sweep.run(false)?;
+    sweep.finish()?;
     Ok(sweep.result(closure.residual))
 }
 
@@ -115,7 +116,11 @@ struct Slot<M: SensitiveDae> {
     by_z: Vec<f64>,
     by_rate: Vec<f64>,
     by_u: Vec<f64>,
-    /// Adjoint states and weights on the memory, one column per quantity.
+}
+
+/// Adjoint states of one step and weights on its memory, one column per quantity.
+#[derive(Clone)]
+struct Found {
     lambda: Vec<f64>,
     on_memory: Vec<f64>,
 }
@@ -126,6 +131,9 @@ struct Backward<'a, M: SensitiveDae> {
     weights: Vec<Vec<f64>>,
     back: CarryBack<'a, M>,
     slots: Vec<Slot<M>>,
+    /// What was found for every step, if the memory granted allows; products with it are then taken once, after the last
+    /// sweep. Otherwise for the steps of a block.
+    found: Vec<Found>,
     /// Derivatives by the fields, one row per quantity.
     fields: Vec<Vec<f64>>,
     largest: f64,
@@ -140,14 +148,15 @@ impl<'a, M: SensitiveDae> Backward<'a, M> {
             by_z: vec![0.0; n * columns],
             by_rate: vec![0.0; m * columns],
             by_u: vec![0.0; u * columns],
-            lambda: vec![0.0; n * columns],
-            on_memory: vec![0.0; m * columns],
         };
+        let none = Found { lambda: vec![0.0; n * columns], on_memory: vec![0.0; m * columns] };
+        let steps = chain.orbit.steps();
         Self {
             of,
             weights: of.iter().map(|q| q.weights(&chain.orbit.outputs)).collect(),
             back: CarryBack::new(model, chain.weights(), columns),
-            slots: (0..BLOCK.min(chain.orbit.steps())).map(slot).collect(),
+            slots: (0..BLOCK.min(steps)).map(slot).collect(),
+            found: vec![none; if chain.keeps() { steps } else { BLOCK.min(steps) }],
             fields: vec![vec![0.0; u]; columns],
             largest: 0.0,
             chain,
@@ -156,17 +165,37 @@ impl<'a, M: SensitiveDae> Backward<'a, M> {
 
     /// Once around the cycle; a sweep that is not forced only carries what the heads hold, until it has faded.
     fn run(&mut self, forced: bool) -> Result<(), GradientError> {
+        let keeps = self.chain.keeps();
         for block in Way::Backward.blocks(self.chain.orbit.steps()) {
             if !forced && self.back.heads.size() <= CLOSED * self.largest {
                 break;
             }
-            self.chain.look(block.clone())?;
+            if forced || !keeps {
+                self.chain.look(block.clone())?;
+                self.prepare(block.clone(), forced);
+            }
             self.chain.ready(block.clone())?;
-            self.prepare(block.clone(), forced);
             self.march(block.clone(), forced);
-            self.gather(block.clone(), forced);
+            if forced {
+                self.gather_outputs(block.clone());
+            }
+            if !keeps {
+                self.gather(block.clone());
+            }
             self.chain.cost.steps += block.len() as u64;
             self.chain.cost.solves += (block.len() * self.of.len()) as u64;
+        }
+        Ok(())
+    }
+
+    /// Products with what all sweeps together found, if they were left for the end.
+    fn finish(&mut self) -> Result<(), GradientError> {
+        if self.chain.keeps() {
+            for block in Way::Backward.blocks(self.chain.orbit.steps()) {
+                self.chain.look(block.clone())?;
+                self.prepare(block.clone(), false);
+                self.gather(block);
+            }
         }
         Ok(())
     }
@@ -187,18 +216,28 @@ impl<'a, M: SensitiveDae> Backward<'a, M> {
         });
     }
 
+    /// Where what is found for step `n` of a block stands.
+    fn place(&self, block: &Range<usize>, n: usize) -> usize {
+        if self.chain.keeps() { n } else { n - block.start }
+    }
+
     /// The adjoint states of a block, one after the other.
     fn march(&mut self, block: Range<usize>, forced: bool) {
-        let m = self.chain.model.memories();
+        let (m, keeps) = (self.chain.model.memories(), self.chain.keeps());
         for n in block.clone().rev() {
-            let slot = &mut self.slots[n - block.start];
+            let place = self.place(&block, n);
+            let (slot, found) = (&self.slots[n - block.start], &mut self.found[place]);
             let (by_z, by_rate): (&[f64], &[f64]) =
                 if forced { (&slot.by_z, &slot.by_rate) } else { (&[], &[]) };
             self.back.forced_step(self.chain.factors(n), by_z, by_rate);
-            slot.lambda.copy_from_slice(&self.back.lambda);
-            for (c, w) in slot.on_memory.chunks_exact_mut(m).enumerate() {
+            if !keeps {
+                found.lambda.fill(0.0);
+                found.on_memory.fill(0.0);
+            }
+            found.lambda.iter_mut().zip(&self.back.lambda).for_each(|(a, b)| *a += b);
+            for (c, w) in found.on_memory.chunks_exact_mut(m).enumerate() {
                 self.back.weigh_memory(c);
-                w.copy_from_slice(&self.back.on_memory);
+                w.iter_mut().zip(&self.back.on_memory).for_each(|(a, b)| *a += b);
             }
             if forced {
                 self.largest = self.largest.max(self.back.heads.size());
@@ -206,22 +245,31 @@ impl<'a, M: SensitiveDae> Backward<'a, M> {
         }
     }
 
-    /// Products of the adjoint states of a block with the derivatives by the fields.
-    fn gather(&mut self, block: Range<usize>, forced: bool) {
-        let Self { chain, slots, fields, .. } = self;
-        let (model, chain, slots) = (chain.model, &*chain, &*slots);
-        let (n_z, m, u) = (model.states(), model.memories(), model.fields());
+    /// Derivatives of the outputs of a block by the fields.
+    fn gather_outputs(&mut self, block: Range<usize>) {
+        let (u, slots) = (self.chain.model.fields(), &self.slots);
+        self.fields.par_iter_mut().enumerate().for_each(|(r, row)| {
+            for slot in slots[..block.len()].iter().rev() {
+                row.iter_mut().zip(&slot.by_u[r * u..(r + 1) * u]).for_each(|(a, b)| *a += b);
+            }
+        });
+    }
+
+    /// Products of what was found for a block with the derivatives by the fields.
+    fn gather(&mut self, block: Range<usize>) {
+        let mut fields = std::mem::take(&mut self.fields);
+        let place = |n: usize| self.place(&block, n);
+        let (model, chain, slots, found) = (self.chain.model, &self.chain, &self.slots, &self.found);
+        let (n_z, m) = (model.states(), model.memories());
         fields.par_iter_mut().enumerate().for_each(|(r, row)| {
             for n in block.clone().rev() {
-                let slot = &slots[n - block.start];
-                if forced {
-                    row.iter_mut().zip(&slot.by_u[r * u..(r + 1) * u]).for_each(|(a, b)| *a += b);
-                }
-                let lambda = &slot.lambda[r * n_z..(r + 1) * n_z];
-                let on_memory = &slot.on_memory[r * m..(r + 1) * m];
+                let (slot, found) = (&slots[n - block.start], &found[place(n)]);
+                let lambda = &found.lambda[r * n_z..(r + 1) * n_z];
+                let on_memory = &found.on_memory[r * m..(r + 1) * m];
                 model.pull(&slot.point, chain.at(n), lambda, on_memory, row);
             }
         });
+        self.fields = fields;
     }
 
     fn result(self, closure: f64) -> GradientTable {

@@ -58,8 +58,10 @@ pub(super) trait Carrier<M: SensitiveDae>: Send {
 pub(super) struct Chain<'a, M: SensitiveDae> {
     pub model: &'a M,
     pub orbit: &'a Orbit,
-    /// The block at hand.
-    window: Option<Window<'a>>,
+    /// The blocks looked at: all of them if factors are kept, else the one at hand.
+    windows: Vec<Window<'a>>,
+    /// Which of them is at hand.
+    here: usize,
     /// Factors of all steps, or of one block.
     factors: Vec<M::Factors>,
     kept: bool,
@@ -79,7 +81,8 @@ impl<'a, M: SensitiveDae> Chain<'a, M> {
         Self {
             model,
             orbit,
-            window: None,
+            windows: Vec::new(),
+            here: 0,
             factors: (0..room).map(|_| model.factors()).collect(),
             kept,
             done: vec![false; count],
@@ -91,17 +94,29 @@ impl<'a, M: SensitiveDae> Chain<'a, M> {
 
     /// Step `n` of the block looked at last.
     pub fn at(&self, n: usize) -> At<'_> {
-        self.window.as_ref().expect("a block is looked at before its steps").at(n)
+        self.windows[self.here].at(n)
     }
 
     /// Looks at the states of a block.
     pub fn look(&mut self, block: Range<usize>) -> Result<(), GradientError> {
-        if self.window.as_ref().is_none_or(|w| w.steps() != block) {
-            let share = block.start as f64 / self.orbit.steps() as f64;
-            let lost = || OrbitError::StepFailed { at_share: share, cycle: 1 };
-            self.window = Some(self.orbit.window(self.model, block).ok_or_else(lost)?);
+        if let Some(known) = self.windows.iter().position(|w| w.steps() == block) {
+            self.here = known;
+            return Ok(());
         }
+        let share = block.start as f64 / self.orbit.steps() as f64;
+        let lost = || OrbitError::StepFailed { at_share: share, cycle: 1 };
+        let window = self.orbit.window(self.model, block).ok_or_else(lost)?;
+        if !self.kept {
+            self.windows.clear();
+        }
+        self.here = self.windows.len();
+        self.windows.push(window);
         Ok(())
+    }
+
+    /// Whether the memory granted holds the factors of all steps.
+    pub fn keeps(&self) -> bool {
+        self.kept
     }
 
     /// Weights of the newest and the two older memories in the rate, 1/s.
@@ -121,8 +136,7 @@ impl<'a, M: SensitiveDae> Chain<'a, M> {
             return Ok(());
         }
         self.look(block.clone())?;
-        let (model, alpha) = (self.model, self.weights()[0]);
-        let Some(window) = &self.window else { return Ok(()) };
+        let (model, alpha, window) = (self.model, self.weights()[0], &self.windows[self.here]);
         let first = if self.kept { block.start } else { 0 };
         self.factors[first..first + block.len()].par_iter_mut().enumerate().try_for_each_init(
             || model.room(),

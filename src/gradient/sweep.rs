@@ -10,10 +10,10 @@ use crate::orbit::{Orbit, OrbitError, OrbitOptions, Quantity, settle};
 use crate::run::{Cancel, Cost};
 use rayon::prelude::*;
 
-/// Forward and backward differences of all quantities by all parameters at one perturbation.
 /// Share of the largest momentary value below which the derivatives of a quantity are small.
 const CANCELLED: f64 = 1e-4;
 
+/// Forward and backward differences of all quantities by all parameters at one perturbation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DifferenceStep {
     /// Relative perturbation.
