@@ -61,6 +61,34 @@ fn checkpoints_and_factors_made_again_give_the_same_cycle_and_gradient() {
 }
 
 #[test]
+fn the_work_of_a_cycle_and_of_its_gradients_is_counted() {
+    let studies = [
+        ("main study, heat balance", main_study(&[("[oil]", COARSE)])),
+        ("smooth Swift-Stieber", smooth_study(&[("[oil]", COARSE)])),
+    ];
+    let mut lines = String::new();
+    for (name, study) in studies {
+        let (orbit, adj) = gradient(&study, EngineName::Adj, 1 << 30);
+        let (_, tra) = gradient(&study, EngineName::Tra, 1 << 30);
+        let per_step = orbit.cost.newton_iterations as f64 / orbit.cost.steps as f64;
+        assert!(per_step <= 3.0, "{name}: {per_step} iterations per step");
+        assert_eq!(orbit.cost.factorisations, orbit.cost.newton_iterations);
+        let steps = study.orbit.steps as u64;
+        for (engine, table) in [("ADJ", &adj), ("TRA", &tra)] {
+            // What is carried beyond the forced sweep costs solves only.
+            assert_eq!(table.cost.factorisations, steps, "{name}: {engine}");
+            let columns = table.cost.solves / table.cost.steps;
+            assert_eq!(table.cost.solves, columns * table.cost.steps, "{name}: {engine}");
+        }
+        lines += &format!(
+            "{name}: {} cycles, {:.2} iterations per step; sweeps ADJ {}, TRA {}; solves ADJ {}, TRA {}\n",
+            orbit.cycles, per_step, adj.sweeps, tra.sweeps, adj.cost.solves, tra.cost.solves
+        );
+    }
+    insta::assert_snapshot!(lines);
+}
+
+#[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let study = smooth_study(&[("[oil]", COARSE)]);
     for name in [EngineName::Adj, EngineName::Tra, EngineName::Fw, EngineName::Cen] {

@@ -36,50 +36,49 @@ pub(super) struct Cell<const N: usize> {
 }
 
 impl<const N: usize> Cell<N> {
-    /// The cell at gap `h` and pressure `p` above the surroundings.
-    pub fn at(film: &Reynolds, s: &Scalars, h: f64, p: f64) -> Self {
+    /// The cell at gap `h` and pressure `p` above the surroundings, written in place: a cell is large.
+    #[inline(always)]
+    pub fn set(&mut self, film: &Reynolds, s: &Scalars, h: f64, p: f64) {
         let density = density(&film.oil, p);
         match &film.rough {
             None => {
                 let gap = Jet::variable(h, GAP);
-                Self::smooth(gap, density, viscosity(&film.oil, s, gap, p))
+                self.set_smooth(gap, density, viscosity(&film.oil, s, gap, p));
             }
             Some(rough) => {
                 let f = rough.surfaces.tabulated(h, [s.journal, s.shell], N > JOURNAL);
                 let eta = viscosity(&film.oil, s, lift(&f.flow_gap), p);
                 let contact = rough.contact.as_ref().map(|c| lift(&c.at(h, s.journal, s.shell)));
-                Self::rough(&f, density, eta, contact.unwrap_or_default())
+                self.set_rough(&f, density, eta);
+                self.contact = contact.unwrap_or_default();
             }
         }
     }
 
-    fn smooth(gap: Jet<N>, density: Jet<N>, eta: Jet<N>) -> Self {
+    #[inline(always)]
+    fn set_smooth(&mut self, gap: Jet<N>, density: Jet<N>, eta: Jet<N>) {
         let thickness = density * gap;
         let resistance = eta.times(12.0) * (thickness * gap * gap).recip();
-        Self {
-            around: resistance,
-            across: resistance,
-            transport: thickness,
-            content: thickness,
-            shear: eta * gap.recip(),
-            stress: gap,
-            contact: Jet::default(),
-        }
+        self.around = resistance;
+        self.across = resistance;
+        self.transport = thickness;
+        self.content = thickness;
+        self.shear = eta * gap.recip();
+        self.stress = gap;
+        self.contact = Jet::default();
     }
 
-    fn rough(f: &RoughFilm, density: Jet<N>, eta: Jet<N>, contact: Jet<N>) -> Self {
+    #[inline(always)]
+    fn set_rough(&mut self, f: &RoughFilm, density: Jet<N>, eta: Jet<N>) {
         let gap = lift(&f.flow_gap);
         let smooth = eta.times(12.0) * (density * gap * gap * gap).recip();
         let average = lift(&f.average_gap);
-        Self {
-            around: smooth * lift(&f.pressure_around).recip(),
-            across: smooth * lift(&f.pressure_across).recip(),
-            transport: density * (average + lift(&f.shear_thickness)),
-            content: density * average,
-            shear: eta * lift(&f.couette_journal_per_m),
-            stress: lift(&f.pressure_stress) * gap,
-            contact,
-        }
+        self.around = smooth * lift(&f.pressure_around).recip();
+        self.across = smooth * lift(&f.pressure_across).recip();
+        self.transport = density * (average + lift(&f.shear_thickness));
+        self.content = density * average;
+        self.shear = eta * lift(&f.couette_journal_per_m);
+        self.stress = lift(&f.pressure_stress) * gap;
     }
 }
 

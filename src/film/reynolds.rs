@@ -201,12 +201,10 @@ impl Reynolds {
         let s = Scalars::of(&self.mesh, &site.input);
         gap.resize(q.len(), 0.0);
         Gap::fill(&self.mesh, site, gap);
-        cells.clear();
-        cells.extend(
-            gap.iter().zip(q).map(|(&h, &q)| {
-                Cell::at(self, &s, h, self.cavitation.split(q).p + self.cavitation_pressure_pa)
-            }),
-        );
+        cells.resize(q.len(), Cell::default());
+        for ((cell, &h), &q) in cells.iter_mut().zip(&*gap).zip(q) {
+            cell.set(self, &s, h, self.cavitation.split(q).p + self.cavitation_pressure_pa);
+        }
     }
 
     /// The two sides of a face.

@@ -204,6 +204,8 @@ pub struct GradientReport {
     pub rows: Vec<GradientRow>,
     /// Share of the orbit's memory left when the engine stopped sweeping.
     pub closure: f64,
+    /// Sweeps over the cycle, the most of any bearing and operating point.
+    pub sweeps: f64,
     /// Cells at which the film has a kink, over all steps.
     pub weakly_active_cells: usize,
     /// Where a micrometre of gap matters, one entry per bearing and operating point with a film of cells.

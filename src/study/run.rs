@@ -319,8 +319,9 @@ fn gradient(
         }
     }
     let closure = tables.iter().fold(0.0f64, |a, t| a.max(t.closure));
+    let sweeps = tables.iter().fold(0.0f64, |a, t| a.max(t.sweeps));
     let gap_sensitivity = curves.iter().filter_map(sensitivity::summary).collect();
-    Ok(GradientReport { engine: study.engine, rows, closure, weakly_active_cells, gap_sensitivity })
+    Ok(GradientReport { engine: study.engine, rows, closure, sweeps, weakly_active_cells, gap_sensitivity })
 }
 
 fn case_rows(
