@@ -36,6 +36,8 @@ fn difference(a: &GradientTable, b: &GradientTable) -> f64 {
 #[test]
 fn checkpoints_and_factors_made_again_give_the_same_cycle_and_gradient() {
     let study = main_study(&[("[oil]", COARSE)]);
+    let poor = main_study(&[("[oil]", COARSE), ("[oil]", "[orbit]\nmemory = \"100 kB\"\n[oil]")]);
+    assert_eq!((study.orbit.memory_bytes, poor.orbit.memory_bytes), (1_000_000_000, 100_000));
     let steps = study.orbit.steps as u64;
     let sizes = [1 << 30, 2 << 20, 100_000];
     let found: Vec<(Orbit, GradientTable)> =

@@ -69,7 +69,10 @@ fn the_report_holds_the_map_as_picture_table_and_grid() {
     let study = main_study(&[("[oil]", COARSE), ("[oil]", "[optimiser]\nmax_iterations = 1\n[oil]")]);
     let findings = quietly(|context| run(&study, context));
     let short = &findings.report.gradient.as_ref().unwrap().gap_sensitivity[0];
-    assert!(short.saves_most.w_per_um_cm2 < 0.0 && short.costs_most.w_per_um_cm2 > 0.0, "{short:?}");
+    assert!(
+        short.shell.saves_most.w_per_um_cm2 < 0.0 && short.journal.costs_most.w_per_um_cm2 > 0.0,
+        "{short:?}"
+    );
     let csv = stribeck::report::sensitivity_csv(&findings).unwrap();
     assert_eq!(csv.lines().count(), 1 + 2 * 36 * 8, "two surfaces, 36 columns, both halves");
     let grids = stribeck::report::film_vtk(&findings.curves[0]);

@@ -49,8 +49,8 @@ pub fn exit_code(outcome: Outcome) -> u8 {
 )]
 struct Arguments {
     /// Threads to use [default: one per core]. The numbers do not depend on it.
-    #[arg(long, global = true, value_name = "COUNT")]
-    threads: Option<std::num::NonZeroUsize>,
+    #[arg(long, global = true, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
     #[command(subcommand)]
     command: Command,
 }
@@ -143,7 +143,7 @@ impl EngineChoice {
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    if let Some(count) = arguments.threads {
+    if let Some(count) = arguments.threads.and_then(|n| std::num::NonZeroUsize::new(usize::from(n))) {
         crate::run::use_threads(count);
     }
     let code = match &arguments.command {

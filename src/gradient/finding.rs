@@ -25,6 +25,8 @@ const STAYS: f64 = 3.0;
 const DECADE: f64 = 9.9;
 /// Times an error that stays has to stand above what rounding makes at that perturbation.
 const ABOVE_NOISE: f64 = 10.0;
+/// One-sided slopes nearer to that of ADJ than this, while CEN confirms it at a smaller perturbation, cross a kink on their way.
+const SMALL_KINK: f64 = 1e-4;
 /// Room for scatter in that comparison.
 const HALF: f64 = 0.5;
 
@@ -116,6 +118,7 @@ impl Evidence<'_> {
 
     fn exact(&self, agree: &str) -> Option<Verdict> {
         let close = |w: &Walk| w.table.last().is_none_or(|r| r.remainder <= CEN_AGREES * r.change);
+        let fall = self.walks.iter().all(|w| falls(&w.table));
         if !self.walks.iter().all(|w| falls(&w.table) || close(w)) {
             return None;
         }
@@ -126,7 +129,13 @@ impl Evidence<'_> {
             Some(_) => return None,
             None => String::new(),
         };
-        let words = format!("exact: {agree}, {central}Taylor remainders fall both ways");
+        let taylor = match fall {
+            true => "Taylor remainders fall both ways".to_owned(),
+            false => format!(
+                "Taylor remainders end below {CEN_AGREES:.0e} of the change, on steps that cross kinks"
+            ),
+        };
+        let words = format!("exact: {agree}, {central}{taylor}");
         Some(verdict(Finding::Exact, words, None))
     }
 
@@ -239,15 +248,20 @@ impl Evidence<'_> {
     fn slopes(&self, agree: &str) -> Option<Verdict> {
         let (ahead, behind, expected) = self.found_slopes();
         let one_side = self.walks.iter().filter(|w| falls(&w.table)).count() == 1;
-        let confirmed = self.best().is_none_or(|b| b.0 <= CEN_AGREES);
-        (one_side || confirmed).then(|| {
+        let best = self.best();
+        let confirmed = best.is_none_or(|b| b.0 <= CEN_AGREES);
+        let off = [ahead, behind].map(|slope| slope / expected - 1.0);
+        let found = format!(
+            "along the test direction the slope ahead is off that of ADJ by {:+.0e} and the one behind by {:+.0e}",
+            off[0], off[1]
+        );
+        if let (true, Some((error, eps, _))) = (off.iter().all(|o| o.abs() <= SMALL_KINK), best) {
             let words = format!(
-                "kink: {agree}, but along the test direction the slope ahead is off that of ADJ by {:.0e} and the one behind by {:.0e}",
-                (ahead / expected - 1.0).abs(),
-                (behind / expected - 1.0).abs()
+                "exact: {agree}, CEN meets them to {error:.0e} at {eps:.0e}; the steps of the Taylor test cross small kinks: {found}"
             );
-            verdict(Finding::Kink, words, None)
-        })
+            return confirmed.then(|| verdict(Finding::Exact, words, None));
+        }
+        (one_side || confirmed).then(|| verdict(Finding::Kink, format!("kink: {agree}, but {found}"), None))
     }
 
     fn noisy(&self, agree: &str) -> Verdict {

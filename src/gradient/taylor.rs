@@ -92,7 +92,8 @@ pub(super) fn walk<M: SensitiveDae>(
     Ok(walks)
 }
 
-/// What a Taylor table says, in words. The finest steps decide: larger ones may cross a kink on their way.
+/// What a Taylor table says, in words. The finest steps decide: larger ones may cross a kink on their way. Remainders near
+/// rounding count only where they go on falling.
 pub fn verdict(table: &[TaylorRow]) -> String {
     let telling: Vec<&TaylorRow> = table.iter().filter(|r| r.remainder > 10.0 * ROUNDING).collect();
     if table.is_empty() {
@@ -101,6 +102,16 @@ pub fn verdict(table: &[TaylorRow]) -> String {
     if telling.len() < 2 {
         return "exact: linear along this direction, the remainder is rounding".to_owned();
     }
+    let above = words(&telling);
+    let all: Vec<&TaylorRow> = table.iter().collect();
+    match (above.starts_with("exact"), telling.len() < all.len()) {
+        (true, true) => format!("{above}; what lies below {:.0e} is rounding", 10.0 * ROUNDING),
+        (false, true) => Some(words(&all)).filter(|w| w.starts_with("exact")).unwrap_or(above),
+        _ => above,
+    }
+}
+
+fn words(telling: &[&TaylorRow]) -> String {
     let orders: Vec<f64> = telling.iter().filter_map(|r| r.order).collect();
     let good = orders.iter().rev().take_while(|o| **o >= 1.7).count();
     let worst = orders.iter().rev().take(good).copied().fold(f64::INFINITY, f64::min);

@@ -221,18 +221,27 @@ pub struct GapSensitivityReport {
     pub operating_point: String,
     /// Change of the loss if the gap widens everywhere, W/um.
     pub everywhere_w_per_um: f64,
-    /// Where on the shell a wider gap saves most.
+    /// On the shell.
+    pub shell: MapRange,
+    /// On the journal, in a frame that turns with it.
+    pub journal: MapRange,
+}
+
+/// Ends of a map.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MapRange {
+    /// Where a wider gap saves most.
     pub saves_most: MapExtremum,
-    /// Where on the shell a wider gap costs most.
+    /// Where a wider gap costs most.
     pub costs_most: MapExtremum,
 }
 
-/// A place on the shell and the value of the map there.
+/// A place on a surface and the value of the map there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MapExtremum {
     /// Change of the loss per gap and area, W/(um cm2).
     pub w_per_um_cm2: f64,
-    /// Angle around the shell, degrees.
+    /// Angle around the surface, degrees.
     pub angle_deg: f64,
     /// Axial position from the middle of the bearing, mm.
     pub axial_mm: f64,

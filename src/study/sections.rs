@@ -57,7 +57,7 @@ pub(super) fn orbit_options(o: &mut OrbitFile, faults: &mut Faults) -> OrbitOpti
         scheme,
         periodicity_tolerance: tolerance,
         max_cycles: cycles,
-        memory_bytes: 1 << 30,
+        memory_bytes: memory_bytes as usize,
     }
 }
 

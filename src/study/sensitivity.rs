@@ -5,7 +5,7 @@ use super::observe;
 use crate::cranktrain::JournalBearing;
 use crate::gradient::{EngineName, GradientTable, engine};
 use crate::optimise::Evaluated;
-use crate::report::{Curves, GapSensitivityReport, MapExtremum, SensitivityMaps};
+use crate::report::{Curves, GapSensitivityReport, MapExtremum, MapRange, SensitivityMaps};
 use crate::run::Cancel;
 
 /// W/m3 in W/(um cm2).
@@ -47,9 +47,21 @@ fn converted(model: &JournalBearing, fields: &[f64]) -> Option<SensitivityMaps> 
 
 /// The map of a case in short.
 pub(super) fn summary(c: &Curves) -> Option<GapSensitivityReport> {
-    let map = &c.sensitivity.as_ref()?.shell_w_per_um_cm2;
+    let maps = c.sensitivity.as_ref()?;
+    let shell = &maps.shell_w_per_um_cm2;
+    let cells = shell.iter().map(Vec::len).sum::<usize>() as f64;
+    let cell_cm2 = std::f64::consts::PI * c.diameter_mm * c.width_mm / cells / MM2_PER_CM2;
+    Some(GapSensitivityReport {
+        bearing: c.bearing.clone(),
+        operating_point: c.operating_point.clone(),
+        everywhere_w_per_um: shell.iter().flatten().sum::<f64>() * cell_cm2,
+        shell: ends(c, shell)?,
+        journal: ends(c, &maps.journal_w_per_um_cm2)?,
+    })
+}
+
+fn ends(c: &Curves, map: &[Vec<f64>]) -> Option<MapRange> {
     let (around, across) = (map.len(), map.first()?.len());
-    let cell_cm2 = std::f64::consts::PI * c.diameter_mm * c.width_mm / (around * across) as f64 / MM2_PER_CM2;
     let extremum = |sign: f64| {
         let cells = (0..around).flat_map(|i| (0..across).map(move |j| (i, j)));
         let (i, j) = cells
@@ -61,11 +73,5 @@ pub(super) fn summary(c: &Curves) -> Option<GapSensitivityReport> {
             axial_mm: c.width_mm * ((j as f64 + 0.5) / across as f64 - 0.5),
         }
     };
-    Some(GapSensitivityReport {
-        bearing: c.bearing.clone(),
-        operating_point: c.operating_point.clone(),
-        everywhere_w_per_um: map.iter().flatten().sum::<f64>() * cell_cm2,
-        saves_most: extremum(-1.0),
-        costs_most: extremum(1.0),
-    })
+    Some(MapRange { saves_most: extremum(-1.0), costs_most: extremum(1.0) })
 }
