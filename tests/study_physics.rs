@@ -271,6 +271,7 @@ fn the_report_names_the_laws_and_shows_contact_and_temperature() {
     let exact = report.constraints.iter().find(|c| c.quantity == "min-film-thickness").unwrap();
     assert!((exact.exact_value.unwrap() - orbit.min_film_thickness_um.value).abs() < 1e-12);
     assert!(exact.value.unwrap() < exact.exact_value.unwrap(), "the smooth minimum is on the safe side");
+    assert!(exact.bias.unwrap() < 0.0 && exact.bias.unwrap() > -0.05 * exact.exact_value.unwrap());
 }
 
 const SMALL_SHAFT: &str = r#"

@@ -40,8 +40,9 @@ impl Outcome {
                  cycle or a finer film mesh, or start from another design."
             }
             Self::Infeasible => {
-                "No design in the box meets all constraints. The constraint list shows by how much each is missed; widen \
-                 the box or relax the worst one."
+                "No design that meets all constraints was found: within the box, their linearisations at the last design contradict \
+                 each other. The constraint list shows by how much each is missed; widen the box, relax the worst one, or start \
+                 from another design."
             }
             Self::StartFailed => {
                 "The start design cannot be simulated; the reason is given. If the orbit did not become periodic: more \

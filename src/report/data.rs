@@ -149,6 +149,8 @@ pub struct ConstraintReport {
     pub value: Option<f64>,
     /// Exact extremum on the mesh.
     pub exact_value: Option<f64>,
+    /// Bias of the smooth value: smooth less exact, in the same unit; zero for means.
+    pub bias: Option<f64>,
     /// Limit.
     pub limit: f64,
     /// Unit of values and limit.
