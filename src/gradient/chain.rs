@@ -7,8 +7,7 @@
 use super::GradientError;
 use crate::dae::{At, SensitiveDae};
 use crate::math::{FixedPoints, fixed_points};
-use crate::orbit::OrbitError;
-use crate::orbit::{BLOCK, Heads, Orbit, OrbitOptions, Recording, Window};
+use crate::orbit::{BLOCK, GONE, Heads, Orbit, OrbitError, OrbitOptions, Recording, Window};
 use crate::run::{Cancel, Cost};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -19,8 +18,6 @@ pub(super) const COLUMNS: usize = 8;
 pub(super) const CLOSED: f64 = 1e-13;
 /// What it may leave if rounding lets it come no nearer.
 const ALMOST_CLOSED: f64 = 1e-9;
-/// Memory below this share of what a sweep began with is gone for all purposes.
-const GONE: f64 = 1e-17;
 /// Sweeps granted.
 const MOST_SWEEPS: usize = 60;
 

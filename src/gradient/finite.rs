@@ -37,7 +37,22 @@ pub struct FiniteDifference {
     pub perturbation: f64,
 }
 
-/// A settled neighbour.
+/// The model with its parameters moved (`change` has one entry per parameter; cycle unknowns may be left out), and its cycle,
+/// continued from the settled one.
+pub(super) fn neighbour<M: SensitiveDae>(
+    model: &M,
+    at: &Orbit,
+    options: &OrbitOptions,
+    change: impl Fn(usize) -> f64,
+    cancel: &Cancel,
+) -> Result<(M, Orbit), GradientError> {
+    let moved: Vec<f64> = at.parameters.iter().enumerate().map(|(j, p)| p + change(j)).collect();
+    let model = model.with_parameters(&moved)?;
+    let orbit = settle(&model, options, Some(at), cancel)?;
+    Ok((model, orbit))
+}
+
+/// What a difference needs of a settled neighbour.
 struct Neighbour {
     values: Vec<f64>,
     cycles: f64,
@@ -61,7 +76,6 @@ impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
         of: &[Quantity],
         cancel: &Cancel,
     ) -> Result<GradientTable, GradientError> {
-        let p = &at.parameters;
         let varied = super::varied(model, at);
         let mut table = GradientTable {
             rows: vec![vec![0.0; varied]; of.len()],
@@ -80,9 +94,8 @@ impl<M: SensitiveDae> GradientEngine<M> for FiniteDifference {
         }
         let here: Vec<f64> = of.iter().map(|q| at.value(q)).collect();
         let settled = |j: usize, by: f64| -> Result<Neighbour, GradientError> {
-            let mut shifted = p.to_vec();
-            shifted[j] += by;
-            let orbit = settle(&model.with_parameters(&shifted)?, options, Some(at), cancel)?;
+            let only = |k: usize| if k == j { by } else { 0.0 };
+            let (_, orbit) = neighbour(model, at, options, only, cancel)?;
             let values = of.iter().map(|q| orbit.value(q)).collect();
             Ok(Neighbour { values, cycles: orbit.cycles, cost: orbit.cost })
         };

@@ -10,10 +10,10 @@
 //! done with the curvature.
 
 use super::balanced::Adjoint;
-use super::finite::tight;
+use super::finite::{neighbour, tight};
 use super::{GradientEngine, GradientError};
 use crate::dae::SensitiveDae;
-use crate::orbit::{Orbit, OrbitOptions, Quantity, settle};
+use crate::orbit::{Orbit, OrbitOptions, Quantity};
 use crate::run::{Cancel, Cost};
 use rayon::prelude::*;
 
@@ -41,10 +41,8 @@ pub fn hessian_times<M: SensitiveDae>(
 ) -> Result<HessianProduct, GradientError> {
     let options = &tight(options, step);
     let side = |sign: f64| -> Result<HessianProduct, GradientError> {
-        let mut p = at.parameters.clone();
-        p.iter_mut().zip(direction).for_each(|(p, d)| *p += sign * step * d);
-        let model = model.with_parameters(&p)?;
-        let orbit = settle(&model, options, Some(at), cancel)?;
+        let along = |j: usize| direction.get(j).map_or(0.0, |d| sign * step * d);
+        let (model, orbit) = neighbour(model, at, options, along, cancel)?;
         let table = Adjoint.gradient(&model, &orbit, options, of, cancel)?;
         Ok(HessianProduct { rows: table.rows, cost: orbit.cost + table.cost })
     };

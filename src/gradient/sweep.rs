@@ -3,7 +3,7 @@
 //! Cycles that share nothing run in parallel; each starts from the settled cycle at the point. Deliberately not here:
 //! what the differences say about a gradient (see [`super::check_gradient`]).
 
-use super::finite::{Difference, tight};
+use super::finite::{Difference, neighbour, tight};
 use super::{GradientError, GradientTable};
 use crate::dae::SensitiveDae;
 use crate::orbit::{Orbit, OrbitError, OrbitOptions, Quantity, settle};
@@ -64,9 +64,8 @@ pub(super) fn differences<M: SensitiveDae>(
     let settled = |job: usize| -> Side {
         let (k, j, sign) =
             (job / (2 * varied), job / 2 % varied, if job.is_multiple_of(2) { 1.0 } else { -1.0 });
-        let mut shifted = at.parameters.clone();
-        shifted[j] += sign * perturbations[k] * model.parameter_scale(j);
-        let orbit = settle(&model.with_parameters(&shifted)?, options, Some(at), cancel)?;
+        let only = |i: usize| if i == j { sign * perturbations[k] * model.parameter_scale(j) } else { 0.0 };
+        let (_, orbit) = neighbour(model, at, options, only, cancel)?;
         Ok((of.iter().map(|q| orbit.value(q)).collect(), orbit.cost))
     };
     let sides: Vec<Side> = (0..2 * varied * perturbations.len()).into_par_iter().map(settled).collect();

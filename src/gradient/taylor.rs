@@ -3,7 +3,7 @@
 //! Along a direction `d`, `|Q(p + h d) - Q(p)|` falls like `h` and `|Q(p + h d) - Q(p) - h dQ/dp d|` like `h^2` if, and
 //! only if, the gradient is right. A quantity linear along `d` has no remainder but rounding: it counts as passed.
 
-use super::finite::tight;
+use super::finite::{neighbour, tight};
 use super::{GradientError, GradientTable};
 use crate::dae::SensitiveDae;
 use crate::orbit::{Orbit, OrbitOptions, Quantity, settle};
@@ -64,7 +64,6 @@ pub(super) fn walk<M: SensitiveDae>(
     (first, count): (f64, usize),
     cancel: &Cancel,
 ) -> Result<Vec<Walk>, GradientError> {
-    let p = &at.parameters;
     let smallest = first / (1u64 << count.max(1)) as f64;
     let options = &tight(options, smallest);
     let base = settle(model, options, Some(at), cancel)?;
@@ -74,9 +73,8 @@ pub(super) fn walk<M: SensitiveDae>(
     let mut walks: Vec<Walk> = gradient.rows.iter().map(start).collect();
     for k in 0..count {
         let step = first / (1u64 << k) as f64;
-        let shifted: Vec<f64> =
-            p.iter().enumerate().map(|(j, p)| p + d.get(j).map_or(0.0, |d| step * d)).collect();
-        let orbit = settle(&model.with_parameters(&shifted)?, options, Some(at), cancel)?;
+        let along = |j: usize| d.get(j).map_or(0.0, |d| step * d);
+        let (_, orbit) = neighbour(model, at, options, along, cancel)?;
         for (walk, quantity) in walks.iter_mut().zip(of) {
             let here = base.value(quantity);
             let change = orbit.value(quantity) - here;

@@ -17,7 +17,6 @@ use crate::dae::{At, Direction, SensitiveDae};
 use crate::orbit::{BLOCK, Carry, Heads, Orbit, OrbitOptions, Quantity};
 use crate::run::Cancel;
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// Derivatives by all parameters, cycle unknowns held.
 pub(super) fn transient<M: SensitiveDae>(
@@ -31,22 +30,15 @@ pub(super) fn transient<M: SensitiveDae>(
     let mut sweep = Forward::new(Chain::new(model, at, options, cancel), of);
     sweep.run(true)?;
     let mut packed = vec![0.0; pair * np];
-    let parts = |packed: &mut Vec<f64>| -> Vec<Range<usize>> {
-        (0..packed.len())
-            .step_by((COLUMNS * pair).max(1))
-            .map(|k| k..(k + COLUMNS * pair).min(pair * np))
-            .collect()
-    };
-    let ranges = parts(&mut packed);
-    for (group, range) in sweep.groups.iter_mut().zip(ranges.clone()) {
-        group.carry.heads.pack(&mut packed[range]);
+    for (group, part) in sweep.groups.iter().zip(packed.chunks_mut((COLUMNS * pair).max(1))) {
+        group.carry.heads.pack(part);
     }
     let rates = sweep.chain.weights();
     let mut carriers: Vec<Carry<M>> =
         sweep.groups.iter().map(|g| Carry::new(model, rates, g.count)).collect();
     let closure = sweep.chain.close(Way::Forward, &mut carriers, &mut packed)?;
-    for (group, range) in sweep.groups.iter_mut().zip(ranges) {
-        group.carry.heads.unpack(&packed[range]);
+    for (group, part) in sweep.groups.iter_mut().zip(packed.chunks((COLUMNS * pair).max(1))) {
+        group.carry.heads.unpack(part);
     }
     sweep.run(false)?;
     Ok(sweep.result(closure.residual))

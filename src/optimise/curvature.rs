@@ -57,7 +57,8 @@ pub fn curvature<P: ConstrainedProblem + ?Sized>(
 ) -> Result<Curvature, EvaluationError> {
     let scaled = Scaled::new(problem, x);
     let s = scaled.to_scaled(x);
-    let slopes = scaled.slopes(&s)?;
+    // At the point itself, not at its image in the unit box: the search has its cycles and gradients at hand.
+    let slopes = scaled.of(problem.slopes(x)?);
     let largest = multipliers.inequalities.iter().fold(0.0f64, |a, l| a.max(l.abs()));
     let mut rows: Vec<Vec<f64>> = slopes.equalities.clone();
     let active = slopes.inequalities.iter().zip(&multipliers.inequalities);

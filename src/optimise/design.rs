@@ -86,6 +86,8 @@ type Key = Vec<u64>;
 struct Memory {
     values: HashMap<Key, Result<Values, EvaluationError>>,
     orbits: VecDeque<(Key, Arc<Evaluated>)>,
+    /// Gradients of the design differentiated last: the search, the curvature and the report ask for the same ones.
+    tables: Option<(Key, Arc<Vec<GradientTable>>)>,
     cost: Cost,
     gradient_cost: Cost,
 }
@@ -151,7 +153,11 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
     }
 
     /// Gradient table of each case at a design.
-    pub fn tables(&self, x: &[f64]) -> Result<Vec<GradientTable>, EvaluationError> {
+    pub fn tables(&self, x: &[f64]) -> Result<Arc<Vec<GradientTable>>, EvaluationError> {
+        let key = key(x);
+        if let Some((_, known)) = self.lock().tables.as_ref().filter(|(k, _)| *k == key) {
+            return Ok(known.clone());
+        }
         let at = self.evaluated(x)?;
         let tables: Result<Vec<GradientTable>, EvaluationError> = (0..self.cases.len())
             .into_par_iter()
@@ -168,8 +174,10 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
                     })
             })
             .collect();
-        let tables = tables?;
-        self.lock().gradient_cost += tables.iter().map(|t| t.cost).sum();
+        let tables = Arc::new(tables?);
+        let mut memory = self.lock();
+        memory.gradient_cost += tables.iter().map(|t| t.cost).sum();
+        memory.tables = Some((key, tables.clone()));
         Ok(tables)
     }
 

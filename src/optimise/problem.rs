@@ -106,12 +106,16 @@ impl<'p, P: ConstrainedProblem + ?Sized> Scaled<'p, P> {
     }
 
     pub fn slopes(&self, s: &[f64]) -> Result<Slopes, EvaluationError> {
-        let slopes = self.problem.slopes(&self.to_true(s))?;
+        Ok(self.of(self.problem.slopes(&self.to_true(s))?))
+    }
+
+    /// True slopes in scaled variables.
+    pub fn of(&self, slopes: Slopes) -> Slopes {
         let row = |g: Vec<f64>, by: f64| g.iter().zip(&self.width).map(|(g, w)| g * w / by).collect();
-        Ok(Slopes {
+        Slopes {
             objective: row(slopes.objective, self.objective_scale),
             inequalities: slopes.inequalities.into_iter().map(|g| row(g, 1.0)).collect(),
             equalities: slopes.equalities.into_iter().map(|g| row(g, 1.0)).collect(),
-        })
+        }
     }
 }

@@ -8,8 +8,8 @@
 
 use crate::dae::LinearisedDae;
 
-/// A memory below this share of what the sweep began with is gone.
-const GONE: f64 = 1e-17;
+/// A memory below this share of what the sweep began with is gone for all purposes.
+pub(crate) const GONE: f64 = 1e-17;
 
 /// Changes of the last memories, several columns side by side.
 pub(crate) struct Heads {

@@ -22,7 +22,7 @@ mod settle;
 mod step;
 mod window;
 
-pub(crate) use carry::{Carry, Heads};
+pub(crate) use carry::{Carry, GONE, Heads};
 pub use quantity::{Quantity, Reduction};
 pub use settle::{Orbit, OrbitError, OrbitOptions, settle};
 pub(crate) use window::BLOCK;

@@ -1,6 +1,6 @@
 //! What is recorded of a cycle, and some steps of it at a time: the states as they were solved, the rates of the memory.
 //!
-//! Everything a backward sweep needs follows from the states, so nothing else is recorded. If even they do not fit the memory
+//! Everything a backward sweep needs follows from the states, so nothing else of the cycle is recorded. If even they do not fit the memory
 //! granted, only the two states in front of every block of [`BLOCK`] steps are kept (checkpoints, one part in sixteen), and
 //! a block is solved again, from them, whenever it is looked at: Newton's method brings back the same states to rounding.
 
@@ -18,7 +18,8 @@ pub(crate) const BLOCK: usize = 32;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Recording {
-    /// States and, while they are of use, the factors of every step: no step is factorised twice.
+    /// States and, while they are of use, the factors of every step: no step is factorised twice. While a gradient is under
+    /// way it keeps its adjoint states beside them, two more states per quantity.
     Factors,
     /// States: steps are factorised again in every sweep.
     States,
@@ -89,20 +90,22 @@ impl Orbit {
         let mut states: Vec<Cow<'_, [f64]>> = Vec::with_capacity(steps.len());
         let mut rates = Vec::with_capacity(steps.len());
         let mut stepper: Option<Stepper<M>> = None;
-        let mut before = self.states[back(2)].clone();
         for n in steps.clone() {
             let z: Cow<'_, [f64]> = if !self.states[n].is_empty() {
                 Cow::Borrowed(&self.states[n])
             } else {
-                let from: &[f64] = states.last().map_or(&self.states[back(1)], |z| z);
+                let earlier = |k: usize| match states.len().checked_sub(k) {
+                    Some(i) => &*states[i],
+                    None => &self.states[back(k - states.len())],
+                };
+                let (from, before) = (earlier(1), earlier(2));
                 let mut z = from.to_vec();
-                model.predict(&before, &mut z);
+                model.predict(before, &mut z);
                 let start = From { z: from, last: &last[0], before: &last[1] };
                 let stepper = stepper.get_or_insert_with(|| Stepper::new(model));
                 stepper.step(self.scheme, self.dt_s, self.time_s(n), &mut z, start)?;
                 Cow::Owned(z)
             };
-            before = states.last().map_or_else(|| self.states[back(1)].clone(), |z| z.to_vec());
             let now = memory(n, &z);
             rates.push(
                 (0..now.len()).map(|i| a[0] * now[i] + a[1] * last[0][i] + a[2] * last[1][i]).collect(),

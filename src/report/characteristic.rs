@@ -2,6 +2,7 @@
 //!
 //! Content of `report.json` of a study that tabulates instead of optimising, its CSV and its page.
 
+use super::csv_file::written;
 use super::figures;
 use super::html::{STYLE, environment};
 use super::{Assumption, Provenance};
@@ -147,8 +148,7 @@ pub fn characteristic_csv(table: &CharacteristicTable) -> Result<String, csv::Er
         }
         writer.write_record(row)?;
     }
-    let bytes = writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    written(writer)
 }
 
 /// Figures of one table, every column in one of them: torques stand together, a column that is zero is left out.

@@ -44,8 +44,7 @@ pub fn orbit_csv(findings: &Findings) -> Result<String, csv::Error> {
             writer.write_record([c.bearing.clone(), c.operating_point.clone()].into_iter().chain(text))?;
         }
     }
-    let bytes = writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    written(writer)
 }
 
 /// The sensitivity maps as text.
@@ -68,6 +67,11 @@ pub fn sensitivity_csv(findings: &Findings) -> Result<String, csv::Error> {
             }
         }
     }
+    written(writer)
+}
+
+/// What was written, as text.
+pub(super) fn written(writer: csv::Writer<Vec<u8>>) -> Result<String, csv::Error> {
     let bytes = writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

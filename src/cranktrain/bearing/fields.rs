@@ -1,8 +1,8 @@
 //! The fields through which the parameters of a bearing act, and the sensitivity map that falls out of them.
 //!
 //! ```text
-//! u = (scalars of the film's input | film temperature | gap added by the shell, per cell | gap added by the journal, per cell of a grid that
-//!      turns with it | coefficients of shapes that turn)
+//! u = (scalars of the film's input | film temperature | gap added by the shell, per cell
+//!      | gap added by the journal, per cell of a grid that turns with it | coefficients of shapes that turn)
 //! ```
 //!
 //! A derivative by the third and fourth part is the derivative by the local gap: where on the shell, and where on the

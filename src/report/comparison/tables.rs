@@ -2,6 +2,7 @@
 
 use super::{Comparison, ProvenCase, ProvenQuantity};
 use crate::gradient::TaylorRow;
+use crate::report::csv_file::written;
 
 type Table = Result<String, csv::Error>;
 
@@ -11,8 +12,7 @@ fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Table {
     for row in rows {
         writer.write_record(row)?;
     }
-    let bytes = writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    written(writer)
 }
 
 fn number(value: f64) -> String {
