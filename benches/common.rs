@@ -33,3 +33,7 @@ pub fn study(changes: &[(&str, &str)]) -> Study {
 pub fn one_core() {
     stribeck::run::use_threads(std::num::NonZeroUsize::MIN);
 }
+
+/// The allocator of the program.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;

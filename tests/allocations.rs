@@ -1,4 +1,5 @@
-//! What a step asks of its memory: once warm, linearising, factorising and solving allocate nothing.
+//! What a step asks of its memory: once warm, linearising, factorising and solving allocate nothing,
+//! nor does the march from step to step.
 
 use crate::common::{MAIN, main_study, quietly};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -6,6 +7,8 @@ use std::cell::Cell;
 use stribeck::dae::{Dae, LinearisedDae, SensitiveDae, Step};
 use stribeck::gradient::EngineName;
 use stribeck::math::{CyclicBand, Stencil};
+use stribeck::orbit::{OrbitOptions, settle};
+use stribeck::run::Cancel;
 use stribeck::study::plan;
 
 /// Counts the allocations of each thread.
@@ -69,5 +72,32 @@ fn a_newton_iteration_of_the_main_study_allocates_nothing() {
         };
         iteration();
         assert_eq!(allocations(iteration), 0, "in an iteration of {MAIN}");
+    });
+}
+
+#[test]
+fn a_march_allocates_as_much_for_one_cycle_as_for_three() {
+    // At a given film temperature: the heat balance repeats the march.
+    let study = main_study(&[
+        ("[oil]", crate::common::COARSE),
+        ("# Switched on; every key has a default.\n[bearings.big_end.heat_balance]\n", ""),
+        ("\"bearings.big_end.heat_balance\" =", "\"oil.density_15c\" ="),
+    ]);
+    quietly(|run| {
+        let plan = plan(&study, EngineName::Adj, run).unwrap();
+        let case = &plan.problem.cases()[0];
+        let marched = |tolerance: f64| {
+            // No factors are kept, so nothing but steps is taken.
+            let options =
+                OrbitOptions { memory_bytes: 2 << 20, periodicity_tolerance: tolerance, ..case.options };
+            let mut cycles = 0.0;
+            let count = allocations(|| {
+                cycles = settle(&case.model, &options, None, &Cancel::default()).unwrap().cycles
+            });
+            (cycles, count)
+        };
+        let ((short, few), (long, many)) = (marched(1e-2), marched(1e-11));
+        assert!(long > short + 1.5, "{short} and {long} cycles");
+        assert_eq!(few, many, "{short} and {long} cycles");
     });
 }

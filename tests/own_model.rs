@@ -144,7 +144,8 @@ fn a_circuit_of_index_two_has_the_gradient_of_its_closed_form_by_all_engines() {
         println!("mean {q}: {miss:.1e}");
         assert!(miss < 1e-12, "{} {power}", orbit.mean(q));
     }
-    for ((name, table), allowed) in EngineName::ALL.iter().zip(&tables).zip([1e-5, 1e-5, 1e-8, 1e-11, 1e-11])
+    // A neighbour of a finite difference is settled to 1e-7 of its perturbation.
+    for ((name, table), allowed) in EngineName::ALL.iter().zip(&tables).zip([1e-5, 1e-5, 1e-7, 1e-11, 1e-11])
     {
         let miss = error(&table.rows, &powers, &slopes);
         println!("{name:?}: {miss:.1e}, closure {:.1e}", table.closure);

@@ -74,7 +74,9 @@ fn the_work_of_a_cycle_and_of_its_gradients_is_counted() {
         let (_, tra) = gradient(&study, EngineName::Tra, 1 << 30);
         let per_step = orbit.cost.newton_iterations as f64 / orbit.cost.steps as f64;
         assert!(per_step <= 3.0, "{name}: {per_step} iterations per step");
-        assert_eq!(orbit.cost.factorisations, orbit.cost.newton_iterations);
+        // Chord steps solve with the factors of the iteration before.
+        let factorised = orbit.cost.factorisations as f64 / orbit.cost.steps as f64;
+        assert!(factorised <= per_step && orbit.cost.solves >= orbit.cost.newton_iterations);
         let steps = study.orbit.steps as u64;
         for (engine, table) in [("ADJ", &adj), ("TRA", &tra)] {
             // What is carried beyond the forced sweep costs solves only.
@@ -83,7 +85,7 @@ fn the_work_of_a_cycle_and_of_its_gradients_is_counted() {
             assert_eq!(table.cost.solves, columns * table.cost.steps, "{name}: {engine}");
         }
         lines += &format!(
-            "{name}: {} cycles, {:.2} iterations per step; sweeps ADJ {}, TRA {}; solves ADJ {}, TRA {}\n",
+            "{name}: {} cycles, {:.2} iterations and {factorised:.2} factorisations per step; sweeps ADJ {}, TRA {}; solves ADJ {}, TRA {}\n",
             orbit.cycles, per_step, adj.sweeps, tra.sweeps, adj.cost.solves, tra.cost.solves
         );
     }

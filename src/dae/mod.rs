@@ -195,7 +195,15 @@ pub trait LinearisedDae: Dae {
     type Room: Send;
     /// Room for factors.
     fn factors(&self) -> Self::Factors;
-    /// Size of one step's factors.
+    /// Room for factors that are kept while others are made: no larger than need be.
+    fn keeper(&self) -> Self::Factors {
+        self.factors()
+    }
+    /// Moves or copies factors into a keeper; what was made may be overwritten then.
+    fn keep(&self, made: &mut Self::Factors, keeper: &mut Self::Factors) {
+        std::mem::swap(made, keeper);
+    }
+    /// Largest size of one step's factors.
     fn factor_bytes(&self) -> usize;
     /// A workspace.
     fn room(&self) -> Self::Room;
@@ -208,6 +216,26 @@ pub trait LinearisedDae: Dae {
         room: &mut Self::Room,
         into: &mut Self::Factors,
     ) -> Result<(), Singular>;
+    /// Like [`Self::linearise`], but `residual` leaves as the solution with the matrix: what Newton's method takes off the
+    /// state. Worth writing where a first solve comes cheaper together with the factors.
+    fn newton(
+        &self,
+        step: Step,
+        memory: &mut [f64],
+        residual: &mut [f64],
+        room: &mut Self::Room,
+        into: &mut Self::Factors,
+    ) -> Result<(), Singular> {
+        self.linearise(step, memory, residual, room, into)?;
+        self.solve(into, residual);
+        Ok(())
+    }
+    /// Writes memory and residual of a step alone, without its matrix.
+    fn balance(&self, step: Step, memory: &mut [f64], residual: &mut [f64], _room: &mut Self::Room) {
+        self.memory(step.t_s, step.z, memory);
+        let rate: Vec<f64> = memory.iter().zip(step.past).map(|(m, past)| step.alpha * m + past).collect();
+        self.residual(At { t_s: step.t_s, z: step.z, rate: &rate }, residual);
+    }
     /// Replaces each column of `rhs` by the solution with the factorised matrix.
     fn solve(&self, factors: &Self::Factors, rhs: &mut [f64]);
     /// `out += F_m' rate`.
@@ -248,6 +276,10 @@ pub trait SensitiveDae: LinearisedDae {
     fn point(&self) -> Self::Point;
     /// Evaluates a point.
     fn fix(&self, at: At, into: &mut Self::Point);
+    /// Evaluates what [`Self::push`] and [`Self::pull`] rest on, where the derivatives of the outputs will not be asked for.
+    fn fix_balance(&self, at: At, into: &mut Self::Point) {
+        self.fix(at, into);
+    }
     /// Factorises `F_z + alpha F_m' M_z` at a point of a trajectory.
     fn factor(
         &self,

@@ -36,40 +36,43 @@ pub(super) struct Cell<const N: usize> {
 }
 
 impl<const N: usize> Cell<N> {
-    /// The cell at gap `h` and pressure `p` above the surroundings, written in place: a cell is large.
+    /// The cell at gap `h` and pressure `p` above the surroundings, written in place: a cell is large. Shear and stress are
+    /// left as they are unless `walls` are wanted: balances, contents and loads rest on the others alone.
     #[inline(always)]
-    pub fn set(&mut self, film: &Reynolds, s: &Scalars, h: f64, p: f64) {
+    pub fn set(&mut self, film: &Reynolds, s: &Scalars, h: f64, p: f64, walls: bool) {
         let density = density(&film.oil, p);
         match &film.rough {
             None => {
                 let gap = Jet::variable(h, GAP);
-                self.set_smooth(gap, density, viscosity(&film.oil, s, gap, p));
+                self.set_smooth(gap, density, viscosity(&film.oil, s, gap, p), walls);
             }
             Some(rough) => {
                 let f = rough.surfaces.tabulated(h, [s.journal, s.shell], N > JOURNAL);
                 let eta = viscosity(&film.oil, s, lift(&f.flow_gap), p);
+                self.set_rough(&f, density, eta, walls);
                 let contact = rough.contact.as_ref().map(|c| lift(&c.at(h, s.journal, s.shell)));
-                self.set_rough(&f, density, eta);
                 self.contact = contact.unwrap_or_default();
             }
         }
     }
 
     #[inline(always)]
-    fn set_smooth(&mut self, gap: Jet<N>, density: Jet<N>, eta: Jet<N>) {
+    fn set_smooth(&mut self, gap: Jet<N>, density: Jet<N>, eta: Jet<N>, walls: bool) {
         let thickness = density * gap;
         let resistance = eta.times(12.0) * (thickness * gap * gap).recip();
         self.around = resistance;
         self.across = resistance;
         self.transport = thickness;
         self.content = thickness;
-        self.shear = eta * gap.recip();
-        self.stress = gap;
+        if walls {
+            self.shear = eta * gap.recip();
+            self.stress = gap;
+        }
         self.contact = Jet::default();
     }
 
     #[inline(always)]
-    fn set_rough(&mut self, f: &RoughFilm, density: Jet<N>, eta: Jet<N>) {
+    fn set_rough(&mut self, f: &RoughFilm, density: Jet<N>, eta: Jet<N>, walls: bool) {
         let gap = lift(&f.flow_gap);
         let smooth = eta.times(12.0) * (density * gap * gap * gap).recip();
         let average = lift(&f.average_gap);
@@ -77,8 +80,10 @@ impl<const N: usize> Cell<N> {
         self.across = smooth * lift(&f.pressure_across).recip();
         self.transport = density * (average + lift(&f.shear_thickness));
         self.content = density * average;
-        self.shear = eta * lift(&f.couette_journal_per_m);
-        self.stress = lift(&f.pressure_stress) * gap;
+        if walls {
+            self.shear = eta * lift(&f.couette_journal_per_m);
+            self.stress = lift(&f.pressure_stress) * gap;
+        }
     }
 }
 

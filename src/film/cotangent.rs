@@ -127,13 +127,60 @@ impl Cotangent<'_> {
             self.scalars.dx += w * c * s.dz;
             self.scalars.dz += w * c * s.dx;
         }
+        self.flows(&weight);
+    }
+
+    /// Weighted flows through all faces: [`Sides::flow`] as [`Self::pull`] sees it, with what all faces share taken out of the sums.
+    fn flows(&mut self, weight: &[f64]) {
+        let (s, film, q, cells, bars) = (self.s, self.film, self.q, self.cells, &mut self.bars);
+        let (downstream, side) = (s.speed >= 0.0, film.side());
+        let (mut pressed, mut dragged) = ([0.0; 2], 0.0);
         film.for_faces(|face| {
             let w = weight[face.a] - face.b.map_or(0.0, |b| weight[b]);
-            if w != 0.0 {
-                let flow = self.sides(&face).flow(face.around, &s);
-                self.pull(&face, &flow, w, Thickness::Transport);
+            if w == 0.0 {
+                return;
+            }
+            let a = film.cavitation.split(q[face.a]);
+            let b = face.b.map(|b| film.cavitation.split(q[b]));
+            let drop = a.p - b.map_or(side, |b| b.p);
+            if let (true, Some(k)) = (face.around, face.b) {
+                let ([ra, rb], [ta, tb]) = (
+                    [cells[face.a].around.v, cells[k].around.v],
+                    [cells[face.a].transport.v, cells[k].transport.v],
+                );
+                let per_sum = 1.0 / (ra + rb);
+                let conductance = 2.0 * per_sum * s.dz / s.dx * w;
+                let mean = (ta * ra + tb * rb) * per_sum;
+                let fill = if downstream { a.fill } else { b.map_or(1.0, |b| b.fill) };
+                let drag = s.speed / 2.0 * s.dz * w;
+                let (flow, carried) = (conductance * drop, drag * fill);
+                let [bar_a, bar_b] =
+                    bars.get_disjoint_mut([face.a, k]).expect("a face lies between two cells");
+                bar_a.p += conductance;
+                bar_b.p -= conductance;
+                bar_a.around += (carried * (ta - mean) - flow) * per_sum;
+                bar_b.around += (carried * (tb - mean) - flow) * per_sum;
+                bar_a.transport += carried * ra * per_sum;
+                bar_b.transport += carried * rb * per_sum;
+                (if downstream { bar_a } else { bar_b }).fill += drag * mean;
+                pressed[0] += flow;
+                dragged += w * fill * mean;
+            } else {
+                let per_sum = 1.0 / (cells[face.a].across.v + face.b.map_or(0.0, |b| cells[b].across.v));
+                let conductance = 2.0 * per_sum * s.dx / s.dz * w;
+                let flow = conductance * drop;
+                for (k, sign) in [(Some(face.a), 1.0), (face.b, -1.0)] {
+                    let Some(k) = k else { continue };
+                    bars[k].p += sign * conductance;
+                    bars[k].across -= flow * per_sum;
+                }
+                pressed[1] += flow;
             }
         });
+        let [around, across] = pressed;
+        self.scalars.speed += s.dz / 2.0 * dragged;
+        self.scalars.dx += (across - around) / s.dx;
+        self.scalars.dz += (around - across) / s.dz + s.speed / 2.0 * dragged;
     }
 
     fn content(&mut self, weights: &[f64]) {

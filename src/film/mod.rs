@@ -181,8 +181,9 @@ pub trait FilmModel: Send + Sync {
     /// `y(q, site)`.
     fn output(&self, site: &FilmSite, q: &[f64]) -> FilmOutput;
 
-    /// Evaluates everything the derivatives at a place rest on, once for many directions and weights.
-    fn fix(&self, site: &FilmSite, q: &[f64], into: &mut FilmPoint);
+    /// Evaluates everything the derivatives at a place rest on, once for many directions and weights; those of the outputs
+    /// other than the loads only if they are wanted.
+    fn fix(&self, site: &FilmSite, q: &[f64], outputs: bool, into: &mut FilmPoint);
 
     /// Changes of residual, content and outputs along a direction at a fixed place.
     fn tangent_at(&self, place: &FilmPlace, change: &FilmChange, wanted: Wanted) -> FilmTangent;
@@ -193,7 +194,7 @@ pub trait FilmModel: Send + Sync {
     /// [`Self::tangent_at`] for a single direction.
     fn tangent(&self, site: &FilmSite, q: &[f64], rate: &[f64], change: &FilmChange) -> FilmTangent {
         let mut point = FilmPoint::default();
-        self.fix(site, q, &mut point);
+        self.fix(site, q, true, &mut point);
         let wanted = Wanted { residual: !rate.is_empty(), ..Wanted::ALL };
         self.tangent_at(&FilmPlace { site, q, rate, point: &point }, change, wanted)
     }
@@ -201,7 +202,7 @@ pub trait FilmModel: Send + Sync {
     /// [`Self::cotangent_at`] for a single weighted sum.
     fn cotangent(&self, site: &FilmSite, q: &[f64], rate: &[f64], weights: &FilmWeights) -> FilmCotangent {
         let mut point = FilmPoint::default();
-        self.fix(site, q, &mut point);
+        self.fix(site, q, true, &mut point);
         self.cotangent_at(&FilmPlace { site, q, rate, point: &point }, weights)
     }
 

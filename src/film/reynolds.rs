@@ -190,11 +190,12 @@ impl Reynolds {
         }
     }
 
-    /// Gap and cell quantities.
+    /// Gap and cell quantities, with or without those at the walls.
     pub(super) fn cells<const N: usize>(
         &self,
         site: &FilmSite,
         q: &[f64],
+        walls: bool,
         gap: &mut Vec<f64>,
         cells: &mut Vec<Cell<N>>,
     ) {
@@ -203,7 +204,7 @@ impl Reynolds {
         Gap::fill(&self.mesh, site, gap);
         cells.resize(q.len(), Cell::default());
         for ((cell, &h), &q) in cells.iter_mut().zip(&*gap).zip(q) {
-            cell.set(self, &s, h, self.cavitation.split(q).p + self.cavitation_pressure_pa);
+            cell.set(self, &s, h, self.cavitation.split(q).p + self.cavitation_pressure_pa, walls);
         }
     }
 
@@ -275,7 +276,7 @@ impl Reynolds {
     pub fn mass_balance(&self, site: &FilmSite, q: &[f64], rate: &[f64]) -> MassBalance {
         let s = Scalars::of(&self.mesh, &site.input);
         let (mut gap, mut cells, mut cover) = (Vec::new(), Vec::new(), Cover::default());
-        self.cells::<2>(site, q, &mut gap, &mut cells);
+        self.cells::<2>(site, q, false, &mut gap, &mut cells);
         self.cover(site.journal_angle_rad, &mut cover);
         let mut r = vec![0.0; q.len()];
         self.balance(&cells, q, rate, &s, &mut r);

@@ -14,9 +14,9 @@ const SMALL_PRESSURE_PA: f64 = 1e5;
 
 impl Reynolds {
     /// Gap and cells of a state.
-    fn evaluate(&self, site: &FilmSite, q: &[f64]) -> (Vec<f64>, Vec<Cell<2>>) {
+    fn evaluate(&self, site: &FilmSite, q: &[f64], walls: bool) -> (Vec<f64>, Vec<Cell<2>>) {
         let (mut gap, mut cells) = (Vec::new(), Vec::new());
-        self.cells(site, q, &mut gap, &mut cells);
+        self.cells(site, q, walls, &mut gap, &mut cells);
         (gap, cells)
     }
 }
@@ -27,15 +27,22 @@ impl FilmModel for Reynolds {
     }
 
     fn content(&self, site: &FilmSite, q: &[f64], content: &mut [f64]) {
-        let (_, cells) = self.evaluate(site, q);
-        for ((c, cell), q) in content.iter_mut().zip(&cells).zip(q) {
-            *c = self.cavitation.split(*q).fill * cell.content.v;
+        let u = &site.input;
+        Gap::fill(&self.mesh, site, content);
+        for (c, q) in content.iter_mut().zip(q) {
+            let split = self.cavitation.split(*q);
+            let (density, _) = self.oil.compressibility.at(split.p + self.cavitation_pressure_pa);
+            let thickness = self.rough.as_ref().map_or(*c, |rough| {
+                let sigmas = [u.journal_roughness_m, u.shell_roughness_m];
+                rough.surfaces.tabulated(*c, sigmas, false).average_gap.value
+            });
+            *c = split.fill * (density * thickness);
         }
     }
 
     fn residual(&self, site: &FilmSite, q: &[f64], rate: &[f64], r: &mut [f64]) {
         let s = Scalars::of(&self.mesh, &site.input);
-        let (_, cells) = self.evaluate(site, q);
+        let (_, cells) = self.evaluate(site, q, false);
         let mut cover = Cover::default();
         self.cover(site.journal_angle_rad, &mut cover);
         self.balance(&cells, q, rate, &s, r);
@@ -47,12 +54,12 @@ impl FilmModel for Reynolds {
     }
 
     fn output(&self, site: &FilmSite, q: &[f64]) -> FilmOutput {
-        let (gap, cells) = self.evaluate(site, q);
+        let (gap, cells) = self.evaluate(site, q, true);
         self.outputs(site, q, &gap, &cells)
     }
 
-    fn fix(&self, site: &FilmSite, q: &[f64], into: &mut FilmPoint) {
-        self.cells(site, q, &mut into.gap, &mut into.cells);
+    fn fix(&self, site: &FilmSite, q: &[f64], outputs: bool, into: &mut FilmPoint) {
+        self.cells(site, q, outputs, &mut into.gap, &mut into.cells);
         if into.cover.share.is_empty() || self.cover_turns() {
             self.cover(site.journal_angle_rad, &mut into.cover);
         }
@@ -97,7 +104,7 @@ impl FilmModel for Reynolds {
     }
 
     fn contact_max_pa(&self, site: &FilmSite, q: &[f64]) -> f64 {
-        self.contact_peak(&self.evaluate(site, q).1).exact()
+        self.contact_peak(&self.evaluate(site, q, true).1).exact()
     }
 
     fn conserves_mass(&self) -> bool {

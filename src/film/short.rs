@@ -316,7 +316,7 @@ impl FilmModel for ShortFilm {
         State::at(self, &site.input).output()
     }
 
-    fn fix(&self, _: &FilmSite, _: &[f64], _: &mut FilmPoint) {}
+    fn fix(&self, _: &FilmSite, _: &[f64], _: bool, _: &mut FilmPoint) {}
 
     fn tangent_at(&self, place: &FilmPlace, change: &FilmChange, _: Wanted) -> FilmTangent {
         FilmTangent { output: State::at(self, &place.site.input).change(&change.input), ..Default::default() }

@@ -13,7 +13,7 @@
 //! on to their fixed point (GMRES over sweeps that only solve), and a last sweep adds the share of what was missing. That
 //! closes the period exactly. Unlike a one-cycle adjoint on a frozen start state, this sees the start state move with the design.
 
-use super::chain::{CLOSED, COLUMNS, Carrier, Chain, Way};
+use super::chain::{COLUMNS, Carrier, Chain, FADED, Way};
 use super::{GradientError, GradientTable};
 use crate::dae::{Cotangent, SensitiveDae};
 use crate::orbit::{BLOCK, Heads, Orbit, OrbitOptions, Quantity};
@@ -167,7 +167,7 @@ impl<'a, M: SensitiveDae> Backward<'a, M> {
     fn run(&mut self, forced: bool) -> Result<(), GradientError> {
         let keeps = self.chain.keeps();
         for block in Way::Backward.blocks(self.chain.orbit.steps()) {
-            if !forced && self.back.heads.size() <= CLOSED * self.largest {
+            if !forced && self.back.heads.size() <= FADED * self.largest {
                 break;
             }
             if forced || !keeps {
@@ -206,8 +206,10 @@ impl<'a, M: SensitiveDae> Backward<'a, M> {
         let (model, chain, of, weights) = (chain.model, &*chain, *of, &*weights);
         slots[..block.len()].par_iter_mut().zip(block).for_each(|(slot, n)| {
             let at = chain.at(n);
-            model.fix(at, &mut slot.point);
-            if forced {
+            if !forced {
+                model.fix_balance(at, &mut slot.point);
+            } else {
+                model.fix(at, &mut slot.point);
                 [&mut slot.by_z, &mut slot.by_rate, &mut slot.by_u].into_iter().for_each(|v| v.fill(0.0));
                 for (r, quantity) in of.iter().enumerate() {
                     slot.weigh(model, at, r, quantity.output, weights[r][n]);

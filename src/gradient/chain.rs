@@ -14,8 +14,11 @@ use std::ops::Range;
 
 /// Columns that are carried together.
 pub(super) const COLUMNS: usize = 8;
-/// What a fixed point may leave of its right-hand side; memory below this share of its start counts as gone.
-pub(super) const CLOSED: f64 = 1e-13;
+/// What a fixed point may leave of its right-hand side. That is what a cycle leaves of its own memory, a few per cent for most
+/// bearings, so gradients are closed to 1e-12.
+const CLOSED: f64 = 1e-11;
+/// Memory below this share of its start counts as gone.
+pub(super) const FADED: f64 = 1e-13;
 /// What it may leave if rounding lets it come no nearer.
 const ALMOST_CLOSED: f64 = 1e-9;
 /// Sweeps granted.
@@ -80,7 +83,7 @@ impl<'a, M: SensitiveDae> Chain<'a, M> {
             orbit,
             windows: Vec::new(),
             here: 0,
-            factors: (0..room).map(|_| model.factors()).collect(),
+            factors: (0..room).map(|_| model.keeper()).collect(),
             kept,
             done: vec![false; count],
             block: 0..0,
@@ -136,8 +139,12 @@ impl<'a, M: SensitiveDae> Chain<'a, M> {
         let (model, alpha, window) = (self.model, self.weights()[0], &self.windows[self.here]);
         let first = if self.kept { block.start } else { 0 };
         self.factors[first..first + block.len()].par_iter_mut().enumerate().try_for_each_init(
-            || model.room(),
-            |room, (k, into)| model.factor(window.at(block.start + k), alpha, room, into),
+            || (model.room(), model.factors()),
+            |(room, made), (k, into)| {
+                model.factor(window.at(block.start + k), alpha, room, made)?;
+                model.keep(made, into);
+                Ok::<(), crate::math::Singular>(())
+            },
         )?;
         self.cost.factorisations += block.len() as u64;
         self.done[block.clone()].fill(true);

@@ -11,7 +11,7 @@
 //! The first sweep starts from `d = 0` before the cycle. The memory it leaves at the end is carried on to its fixed point
 //! (GMRES over sweeps that only solve), and a last sweep adds the response to what was missing.
 
-use super::chain::{CLOSED, COLUMNS, Carrier, Chain, Way};
+use super::chain::{COLUMNS, Carrier, Chain, FADED, Way};
 use super::{GradientError, GradientTable};
 use crate::dae::{At, Direction, SensitiveDae};
 use crate::orbit::{BLOCK, Carry, Heads, Orbit, OrbitOptions, Quantity};
@@ -113,7 +113,7 @@ impl<'a, M: SensitiveDae> Forward<'a, M> {
     /// Once around the cycle; a sweep that is not forced only carries what the heads hold, until it has faded.
     fn run(&mut self, forced: bool) -> Result<(), GradientError> {
         for block in Way::Forward.blocks(self.chain.orbit.steps()) {
-            let open = |g: &Group<M>| forced || g.carry.heads.size() > CLOSED * g.largest;
+            let open = |g: &Group<M>| forced || g.carry.heads.size() > FADED * g.largest;
             if !self.groups.iter().any(open) {
                 break;
             }

@@ -31,13 +31,15 @@ impl<const K: usize> HeightTable<K> {
     }
 
     /// All functions at `x`, or nothing outside the grid.
+    #[inline(always)]
     pub fn at(&self, x: f64) -> Option<[Slope; K]> {
         let place = (x - self.low) * self.per_unit;
         let inside = place >= 0.0 && place + 1.0 < self.nodes.len() as f64;
         if !inside {
             return None;
         }
-        let (i, t) = (place as usize, place.fract());
+        let i = place as usize;
+        let t = place - i as f64;
         let h = 1.0 / self.per_unit;
         let (a, b) = (&self.nodes[i], &self.nodes[i + 1]);
         let (rise, bend) = (t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t) * self.per_unit);

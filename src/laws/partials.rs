@@ -18,6 +18,8 @@ pub(super) type Slope = (f64, f64);
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     sigma_m: f64,
+    /// `1 / sigma`.
+    per_sigma: f64,
     sigmas_m: [f64; 2],
     /// Variance shares of journal and shell, `(sigma_i/sigma)^2`.
     shares: [f64; 2],
@@ -29,29 +31,35 @@ pub(super) struct Place {
 
 impl Place {
     /// From the nominal gap (any sign) and the two roughnesses, not both zero.
+    #[inline(always)]
     pub fn new(gap_m: f64, sigma_journal_m: f64, sigma_shell_m: f64) -> Self {
         let sigma_m = (sigma_journal_m * sigma_journal_m + sigma_shell_m * sigma_shell_m).sqrt();
+        let per_sigma = 1.0 / sigma_m;
         let share = |sigma: f64| sigma * sigma / (sigma_m * sigma_m);
         Self {
             sigma_m,
+            per_sigma,
             sigmas_m: [sigma_journal_m, sigma_shell_m],
             shares: [share(sigma_journal_m), share(sigma_shell_m)],
-            height: gap_m / sigma_m,
+            height: gap_m * per_sigma,
             whole: true,
         }
     }
 
     /// The same place where slopes by the roughnesses may stay zero: a Newton step needs none.
+    #[inline(always)]
     pub fn by_gap_only(self) -> Self {
         Self { whole: false, ..self }
     }
 
     /// `sigma^power * common(H)`.
+    #[inline(always)]
     pub fn scaled(&self, power: i32, common: Slope) -> Partials {
         self.shared(power, common, (0.0, 0.0), (0.0, 0.0))
     }
 
     /// `sigma^power * (common(H) + share_journal * journal(H) + share_shell * shell(H))`.
+    #[inline(always)]
     pub fn shared(&self, power: i32, common: Slope, journal: Slope, shell: Slope) -> Partials {
         let mix = |common: f64, journal: f64, shell: f64| {
             common + self.shares[0] * journal + self.shares[1] * shell
@@ -61,21 +69,24 @@ impl Place {
         let scale = match power {
             0 => 1.0,
             1 => self.sigma_m,
-            -1 => 1.0 / self.sigma_m,
+            -1 => self.per_sigma,
             _ => self.sigma_m.powi(power),
         };
         if !self.whole {
-            return Partials { value: scale * value, by: [scale * slope / self.sigma_m, 0.0, 0.0] };
+            return Partials { value: scale * value, by: [scale * slope * self.per_sigma, 0.0, 0.0] };
         }
         let spread = f64::from(power) * value - self.height * slope;
         let contrast = 2.0 * (journal.0 - shell.0);
         let by_sigma = |own: usize, sign: f64| {
-            scale * self.sigmas_m[own] / self.sigma_m.powi(2)
+            scale
+                * self.sigmas_m[own]
+                * self.per_sigma
+                * self.per_sigma
                 * (spread + sign * contrast * self.shares[1 - own])
         };
         Partials {
             value: scale * value,
-            by: [scale * slope / self.sigma_m, by_sigma(0, 1.0), by_sigma(1, -1.0)],
+            by: [scale * slope * self.per_sigma, by_sigma(0, 1.0), by_sigma(1, -1.0)],
         }
     }
 }

@@ -22,12 +22,15 @@ pub struct Bordered {
     band: Option<CyclicBand>,
     n: usize,
     k: usize,
-    /// `X`, column by column; holds `V` after [`Self::factor`].
+    /// `X`, column by column, and room for one more; holds `V` after [`Self::factor`]. Columns of zeros at the end (velocities) cost
+    /// nothing.
     pub columns: Vec<f64>,
     /// `K`, row by row.
     pub rows: Vec<f64>,
     /// `S`.
     pub corner: DMatrix<f64>,
+    /// Which columns and rows hold anything: others are not worked with.
+    used: [[bool; MOST]; 2],
     sigma_inverse: DMatrix<f64>,
 }
 
@@ -40,17 +43,46 @@ impl Bordered {
             band: (n > 0).then(|| CyclicBand::new(blocks, b)),
             n,
             k,
-            columns: vec![0.0; n * k],
+            columns: vec![0.0; n * (k + 1)],
             rows: vec![0.0; n * k],
             corner: DMatrix::zeros(k, k),
+            used: [[true; MOST]; 2],
             sigma_inverse: DMatrix::zeros(k, k),
         }
+    }
+
+    /// Room for packed factors of such a matrix, not for factorising.
+    pub fn keeper(blocks: usize, b: usize, k: usize) -> Self {
+        Self { band: (blocks > 0).then(|| CyclicBand::keeper(blocks, b)), ..Self::new(0, 0, k) }
+            .of(blocks * b)
+    }
+
+    fn of(self, n: usize) -> Self {
+        Self { n, columns: vec![0.0; n * (self.k + 1)], rows: vec![0.0; n * self.k], ..self }
+    }
+
+    /// Copies the factors into a keeper.
+    pub fn pack_into(&self, keeper: &mut Self) {
+        if let (Some(band), Some(kept)) = (&self.band, &mut keeper.band) {
+            band.pack_into(kept);
+        }
+        for (part, (from, to)) in
+            [(&self.columns, &mut keeper.columns), (&self.rows, &mut keeper.rows)].into_iter().enumerate()
+        {
+            for c in (0..self.k).filter(|c| self.used[part][*c]) {
+                let one = c * self.n..(c + 1) * self.n;
+                to[one.clone()].copy_from_slice(&from[one]);
+            }
+        }
+        keeper.used = self.used;
+        keeper.corner.copy_from(&self.corner);
+        keeper.sigma_inverse.copy_from(&self.sigma_inverse);
     }
 
     /// Size of the factors of such a matrix.
     pub fn bytes(blocks: usize, b: usize, k: usize) -> usize {
         let band = if blocks > 0 { CyclicBand::bytes(blocks, b) } else { 0 };
-        band + (2 * blocks * b * k + 2 * k * k) * size_of::<f64>()
+        band + ((2 * k + 1) * blocks * b + 2 * k * k) * size_of::<f64>()
     }
 
     /// Number of unknowns, band and border.
@@ -65,20 +97,59 @@ impl Bordered {
 
     /// Factorises with `a` as the band part.
     pub fn factor(&mut self, a: &Stencil) -> Result<(), Singular> {
+        self.eliminate(a, &mut [])
+    }
+
+    /// Factorises and replaces one right-hand side by the solution: cheaper than one after the other, as the band is solved
+    /// for it together with the columns.
+    pub fn factor_and_solve(&mut self, a: &Stencil, rhs: &mut [f64]) -> Result<(), Singular> {
+        let (x1, x2) = rhs.split_at_mut(self.n);
+        self.eliminate(a, x1)?;
+        self.solve_border(x1, x2);
+        Ok(())
+    }
+
+    /// Factorises, and solves with the band alone.
+    fn eliminate(&mut self, a: &Stencil, x1: &mut [f64]) -> Result<(), Singular> {
         // A handful of unknowns: the inverse serves both kinds of solve without allocation.
         let sigma = &mut self.sigma_inverse;
         sigma.copy_from(&self.corner);
         if let Some(band) = &mut self.band {
             band.factor(a)?;
-            band.solve(&mut self.columns);
-            for (i, row) in self.rows.chunks_exact(self.n).enumerate() {
-                for (j, column) in self.columns.chunks_exact(self.n).enumerate() {
+            let n = self.n;
+            for (used, part) in self.used.iter_mut().zip([&self.columns, &self.rows]) {
+                for (used, one) in used.iter_mut().zip(part.chunks_exact(n)) {
+                    *used = one.iter().any(|v| *v != 0.0);
+                }
+            }
+            let full = (0..self.k).rev().find(|c| self.used[0][*c]).map_or(0, |c| c + 1);
+            let behind = full * n..full * n + x1.len();
+            self.columns[behind.clone()].copy_from_slice(x1);
+            band.solve(&mut self.columns[..behind.end]);
+            x1.copy_from_slice(&self.columns[behind.clone()]);
+            self.columns[behind].fill(0.0);
+            for (i, row) in self.rows.chunks_exact(n).enumerate() {
+                if !self.used[1][i] {
+                    continue;
+                }
+                for (j, column) in self.columns.chunks_exact(n).take(full).enumerate() {
                     sigma[(i, j)] -= dot(row, column);
                 }
             }
         }
         let regular = sigma.try_inverse_mut() && sigma.iter().all(|v| v.is_finite());
         if regular { Ok(()) } else { Err(Singular(self.n)) }
+    }
+
+    /// Completes a solution from that of the band alone.
+    fn solve_border(&self, x1: &mut [f64], x2: &mut [f64]) {
+        for (i, v) in x2.iter_mut().enumerate().filter(|(i, _)| self.used[1][*i]) {
+            *v -= dot(&self.rows[i * self.n..(i + 1) * self.n], x1);
+        }
+        self.solve_corner(x2, false);
+        for (j, v) in x2.iter().enumerate().filter(|(j, _)| self.used[0][*j]) {
+            axpy(x1, -v, &self.columns[j * self.n..(j + 1) * self.n]);
+        }
     }
 
     /// `x = Sigma^-1 x`, or with the transposed matrix.
@@ -102,13 +173,7 @@ impl Bordered {
         }
         for x in rhs.chunks_exact_mut(self.len()) {
             let (x1, x2) = x.split_at_mut(self.n);
-            for (i, v) in x2.iter_mut().enumerate() {
-                *v -= dot(&self.rows[i * self.n..(i + 1) * self.n], x1);
-            }
-            self.solve_corner(x2, false);
-            for (j, v) in x2.iter().enumerate() {
-                axpy(x1, -v, &self.columns[j * self.n..(j + 1) * self.n]);
-            }
+            self.solve_border(x1, x2);
         }
     }
 
@@ -120,11 +185,11 @@ impl Bordered {
     fn solve_some_transposed(&self, rhs: &mut [f64]) {
         for x in rhs.chunks_exact_mut(self.len()) {
             let (x1, x2) = x.split_at_mut(self.n);
-            for (j, v) in x2.iter_mut().enumerate() {
+            for (j, v) in x2.iter_mut().enumerate().filter(|(j, _)| self.used[0][*j]) {
                 *v -= dot(&self.columns[j * self.n..(j + 1) * self.n], x1);
             }
             self.solve_corner(x2, true);
-            for (i, v) in x2.iter().enumerate() {
+            for (i, v) in x2.iter().enumerate().filter(|(i, _)| self.used[1][*i]) {
                 axpy(x1, -v, &self.rows[i * self.n..(i + 1) * self.n]);
             }
         }

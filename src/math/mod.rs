@@ -1,5 +1,5 @@
 //! Algebra that every floor above needs: a periodic spline, the cyclic band solver of the film, fixed points of linear maps, smooth
-//! extrema.
+//! extrema, elementwise work in vectors.
 //!
 //! Deliberately not here: anything that knows what a bearing is. Small dense systems use nalgebra directly.
 
@@ -8,6 +8,7 @@ mod bordered;
 mod krylov;
 mod power_mean;
 mod spline;
+mod sweep;
 mod vector;
 
 pub use band::{CyclicBand, Singular, Stencil};
@@ -15,4 +16,5 @@ pub use bordered::Bordered;
 pub use krylov::{FixedPoints, fixed_points};
 pub use power_mean::PowerMean;
 pub use spline::{PeriodicSpline, SplineError};
+pub(crate) use sweep::{Lane, sweep};
 pub(crate) use vector::dot;

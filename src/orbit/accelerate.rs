@@ -29,9 +29,10 @@ const SWEEPS: usize = 24;
 const PROGRESS: f64 = 0.5;
 /// Largest difference of two passes, in units of change, at which a correction is worth a try.
 const NEAR: f64 = 0.3;
-/// Passes that marching alone must still need, by its own pace, for factors to be kept; and for another correction.
-const MANY: f64 = 2.5;
-const SOME: f64 = 1.2;
+/// Passes that marching alone must still need, by its own pace, for factors to be kept; and for another correction. Keeping
+/// them slows a pass down by half, a correction takes almost a pass, and another pass has to show that it was right.
+const MANY: f64 = 3.5;
+const SOME: f64 = 2.0;
 
 /// What was before a correction.
 struct Before {
@@ -83,11 +84,11 @@ impl<M: LinearisedDae> Accelerator<M> {
     }
 
     /// Keeps the factors of step `n`.
-    pub fn record(&mut self, n: usize, taken: Taken, factors: &mut M::Factors) {
+    pub fn record(&mut self, model: &M, n: usize, taken: Taken, factors: &mut M::Factors) {
         if self.factors.is_empty() {
             return;
         }
-        std::mem::swap(&mut self.factors[n], factors);
+        model.keep(factors, &mut self.factors[n]);
         self.kept = if taken == Taken::Solved { self.kept + 1 } else { 0 };
     }
 
@@ -104,7 +105,7 @@ impl<M: LinearisedDae> Accelerator<M> {
         if self.factors.is_empty() {
             self.pace = if march.taken == 2 * count { now / self.early } else { self.pace };
             if self.passes_left(march, now) > MANY {
-                self.factors = (0..count).map(|_| march.model.factors()).collect();
+                self.factors = (0..count).map(|_| march.model.keeper()).collect();
             }
             return;
         }

@@ -27,6 +27,11 @@ pub(super) struct March<'m, M: LinearisedDae> {
     /// How far the state that stood ahead of the last step was from its solution, in units of change: whether the states of
     /// the pass before (or of the similar model) are better guesses than the last step continued.
     off: f64,
+    /// The state that stood for the last step before it was taken; empty if none did.
+    stood: Vec<f64>,
+    /// Room for the next guess, and for differences: the loop over the steps allocates nothing.
+    next: Vec<f64>,
+    change: Vec<f64>,
     pub taken: usize,
     /// Steps taken when the last one was walked instead of solved.
     walked: Option<usize>,
@@ -63,6 +68,9 @@ impl<'m, M: LinearisedDae> March<'m, M> {
             last,
             memories,
             off: if warm { 0.0 } else { f64::INFINITY },
+            stood: Vec::new(),
+            next: Vec::new(),
+            change: Vec::new(),
             taken: 0,
             walked: None,
             accelerator: Accelerator::new(recording),
@@ -118,18 +126,20 @@ impl<'m, M: LinearisedDae> March<'m, M> {
         let n = self.taken % count;
         let t_s = n as f64 * self.dt_s;
         let mut z = self.guess(n);
-        let stood = std::mem::take(&mut self.states[n]);
         let from =
             From { z: &self.states[(n + count - 1) % count], last: &self.last[0], before: &self.last[1] };
         let taken = self.stepper.step(self.options.scheme, self.dt_s, t_s, &mut z, from);
-        let taken = taken.ok_or_else(|| self.failed(self.taken))?;
-        self.off = self.distance(stood, &z);
-        self.states[n] = z;
+        let Some(taken) = taken else {
+            self.next = z;
+            return Err(self.failed(self.taken));
+        };
+        self.next = std::mem::replace(&mut self.stood, std::mem::replace(&mut self.states[n], z));
+        self.off = self.distance(n);
         self.taken += 1;
         if taken == Taken::Walked {
             self.walked = Some(self.taken);
         }
-        self.accelerator.record(n, taken, &mut self.stepper.factors);
+        self.accelerator.record(self.model, n, taken, &mut self.stepper.factors);
         self.last.rotate_right(1);
         self.model.memory(t_s, &self.states[n], &mut self.last[0]);
         self.remember(n);
@@ -141,9 +151,11 @@ impl<'m, M: LinearisedDae> March<'m, M> {
     fn remember(&mut self, n: usize) {
         let count = self.options.steps;
         self.replaced.rotate_right(1);
-        self.replaced[0] = std::mem::take(&mut self.memories[n]);
+        std::mem::swap(&mut self.replaced[0], &mut self.memories[n]);
         if self.recording.keeps(n, count) {
             self.memories[n].clone_from(&self.last[0]);
+        } else {
+            self.memories[n] = Vec::new();
         }
         // The last two steps are the next one's past.
         let old = (n + count - 2) % count;
@@ -153,27 +165,42 @@ impl<'m, M: LinearisedDae> March<'m, M> {
     }
 
     /// How far the memory of the last step (or the one before) is from that of the pass before.
-    pub fn difference(&self, back: usize) -> f64 {
-        let pair = self.last[back].iter().zip(&self.replaced[back]);
-        self.model.memory_change(&pair.map(|(a, b)| a - b).collect::<Vec<f64>>())
+    pub fn difference(&mut self, back: usize) -> f64 {
+        self.change.clear();
+        self.change.extend(self.last[back].iter().zip(&self.replaced[back]).map(|(a, b)| a - b));
+        self.model.memory_change(&self.change)
     }
 
-    /// Size of the change from the state that stood for a step to its solution.
-    fn distance(&self, stood: Vec<f64>, z: &[f64]) -> f64 {
-        if stood.is_empty() {
+    /// Size of the change from the state that stood for step `n` to its solution.
+    fn distance(&mut self, n: usize) -> f64 {
+        if self.stood.is_empty() {
             return f64::INFINITY;
         }
-        let change: Vec<f64> = z.iter().zip(&stood).map(|(z, old)| z - old).collect();
-        self.model.change(z, &change)
+        self.change_of(n);
+        self.model.change(&self.states[n], &self.change)
     }
 
-    /// The state of the pass before, or the last step continued.
-    fn guess(&self, n: usize) -> Vec<f64> {
+    /// Writes what the solution of step `n` changed of the state that stood for it.
+    fn change_of(&mut self, n: usize) {
+        self.change.clear();
+        self.change.extend(self.states[n].iter().zip(&self.stood).map(|(z, old)| z - old));
+    }
+
+    /// The state of the pass before, moved like the step before, or the last step continued.
+    fn guess(&mut self, n: usize) -> Vec<f64> {
         let count = self.options.steps;
+        let mut z = std::mem::take(&mut self.next);
+        let last = (n + count - 1) % count;
         if self.off <= NEAR && !self.states[n].is_empty() {
-            return self.states[n].clone();
+            z.clone_from(&self.states[n]);
+            if !self.stood.is_empty() {
+                self.change_of(last);
+                let share = self.model.admissible(&z, &self.change);
+                self.model.advance(&mut z, &self.change, share);
+            }
+            return z;
         }
-        let mut z = self.states[(n + count - 1) % count].clone();
+        z.clone_from(&self.states[last]);
         let before = &self.states[(n + count - 2) % count];
         if !before.is_empty() {
             self.model.predict(before, &mut z);

@@ -11,6 +11,12 @@ use crate::run::Cost;
 
 /// A change below this ends the iteration; convergence is quadratic, so the error left is about its square.
 const TOLERANCE: f64 = 1e-8;
+/// A full step below this is followed by chord steps (the factors stay, only the residual is new) until one is below the second:
+/// each leaves of the error before it a share of the size of that full step.
+const CHORD: f64 = 1e-4;
+const CHORD_TOLERANCE: f64 = 1e-10;
+/// A chord step longer than this share of the step before it is no gain over a full one.
+const CHORD_GAIN: f64 = 1e-2;
 /// Iterations of one attempt.
 const MOST_ITERATIONS: usize = 40;
 /// Full steps before damping may set in.
@@ -144,26 +150,51 @@ impl<'m, M: LinearisedDae> Stepper<'m, M> {
         for _ in 0..MOST_ITERATIONS {
             let step = Step { t_s, z, alpha, past: &self.past };
             let (memory, residual) = (&mut self.memory, &mut self.residual);
-            let found = self.model.linearise(step, memory, residual, &mut self.room, &mut self.factors);
+            let found = self.model.newton(step, memory, residual, &mut self.room, &mut self.factors);
             if found.is_err() {
                 return false;
             }
-            self.residual.iter_mut().for_each(|v| *v = -*v);
-            self.model.solve(&self.factors, &mut self.residual);
             self.cost.newton_iterations += 1;
             self.cost.factorisations += 1;
             self.cost.solves += 1;
-            let change = self.model.change(z, &self.residual);
-            if !change.is_finite() {
+            let Some((share, change)) = self.update(z, |change| damping.share(change)) else {
                 return false;
-            }
-            let share = damping.share(change).min(self.model.admissible(z, &self.residual));
-            self.model.advance(z, &self.residual, share);
-            if share == 1.0 && change < TOLERANCE {
+            };
+            if share == 1.0 && (change < TOLERANCE || (change < CHORD && self.chords(alpha, t_s, z, change)))
+            {
                 return true;
             }
         }
         false
+    }
+
+    /// Chord steps behind a full step of a given size; whether they end below their tolerance.
+    fn chords(&mut self, alpha: f64, t_s: f64, z: &mut [f64], mut last: f64) -> bool {
+        loop {
+            let step = Step { t_s, z, alpha, past: &self.past };
+            self.model.balance(step, &mut self.memory, &mut self.residual, &mut self.room);
+            self.model.solve(&self.factors, &mut self.residual);
+            self.cost.newton_iterations += 1;
+            self.cost.solves += 1;
+            match self.update(z, |_| 1.0) {
+                Some((1.0, change)) if change < CHORD_TOLERANCE => return true,
+                Some((1.0, change)) if change < CHORD_GAIN * last => last = change,
+                _ => return false,
+            }
+        }
+    }
+
+    /// Takes what stands in the residual's place off the state, as far as the model and `share` allow; returns that share and the size
+    /// of the whole change, or nothing if it is no number.
+    fn update(&mut self, z: &mut [f64], share: impl FnOnce(f64) -> f64) -> Option<(f64, f64)> {
+        self.residual.iter_mut().for_each(|v| *v = -*v);
+        let change = self.model.change(z, &self.residual);
+        if !change.is_finite() {
+            return None;
+        }
+        let share = share(change).min(self.model.admissible(z, &self.residual));
+        self.model.advance(z, &self.residual, share);
+        Some((share, change))
     }
 }
 

@@ -210,7 +210,7 @@ pub struct BearingFactors {
 
 /// Workspace of a linearisation of a bearing.
 pub struct BearingRoom {
-    linear: FilmLinear,
+    pub(super) linear: FilmLinear,
     shape: Vec<f64>,
 }
 
@@ -224,6 +224,19 @@ impl LinearisedDae for JournalBearing {
             system: Bordered::new(blocks, b, self.layout.border()),
             carry: FilmCarry::new(self.layout.n, self.layout.motions),
         }
+    }
+
+    fn keeper(&self) -> BearingFactors {
+        let (blocks, b) = self.setup.film.shape();
+        BearingFactors {
+            system: Bordered::keeper(blocks, b, self.layout.border()),
+            carry: FilmCarry::new(self.layout.n, self.layout.motions),
+        }
+    }
+
+    fn keep(&self, made: &mut BearingFactors, keeper: &mut BearingFactors) {
+        made.system.pack_into(&mut keeper.system);
+        std::mem::swap(&mut made.carry, &mut keeper.carry);
     }
 
     fn factor_bytes(&self) -> usize {
@@ -244,19 +257,26 @@ impl LinearisedDae for JournalBearing {
         room: &mut BearingRoom,
         into: &mut BearingFactors,
     ) -> Result<(), Singular> {
-        let (l, n) = (self.layout, self.layout.n);
-        memory[n..n + 2].copy_from_slice(&self.pair(step.z, 0));
-        if l.mass {
-            memory[n + 2..].copy_from_slice(&self.pair(step.z, 1));
-        }
-        let mut rates = [0.0; 4];
-        (0..l.remembered()).for_each(|k| rates[k] = step.alpha * memory[n + k] + step.past[n + k]);
-        let velocity = [rates[0], rates[1]];
-        let factors = self.assemble(step.t_s, step.z, velocity, (step.alpha, step.past), room, into);
-        memory[..n].copy_from_slice(&room.linear.content);
-        residual[..n].copy_from_slice(&room.linear.residual);
-        self.border_residual(step.t_s, step.z, &rates, &room.linear.loads, &mut residual[n..]);
-        factors
+        self.evaluate(step, memory, residual, room);
+        self.enter(step.t_s, step.alpha, &mut room.linear, into);
+        into.system.factor(&room.linear.stencil)
+    }
+
+    fn newton(
+        &self,
+        step: Step,
+        memory: &mut [f64],
+        residual: &mut [f64],
+        room: &mut BearingRoom,
+        into: &mut BearingFactors,
+    ) -> Result<(), Singular> {
+        self.evaluate(step, memory, residual, room);
+        self.enter(step.t_s, step.alpha, &mut room.linear, into);
+        into.system.factor_and_solve(&room.linear.stencil, residual)
+    }
+
+    fn balance(&self, step: Step, memory: &mut [f64], residual: &mut [f64], room: &mut BearingRoom) {
+        self.evaluate(step, memory, residual, room);
     }
 
     fn solve(&self, factors: &BearingFactors, rhs: &mut [f64]) {
@@ -330,20 +350,40 @@ impl LinearisedDae for JournalBearing {
 }
 
 impl JournalBearing {
-    /// Linearises the film for the rate `alpha c + past` and factorises the matrix of the step.
-    pub(super) fn assemble(
+    /// Memory and residual of a step; the film stays linearised there.
+    fn evaluate(&self, step: Step, memory: &mut [f64], residual: &mut [f64], room: &mut BearingRoom) {
+        let (l, n) = (self.layout, self.layout.n);
+        memory[n..n + 2].copy_from_slice(&self.pair(step.z, 0));
+        if l.mass {
+            memory[n + 2..].copy_from_slice(&self.pair(step.z, 1));
+        }
+        let mut rates = [0.0; 4];
+        (0..l.remembered()).for_each(|k| rates[k] = step.alpha * memory[n + k] + step.past[n + k]);
+        let velocity = [rates[0], rates[1]];
+        self.linearise_film(step.t_s, step.z, velocity, (step.alpha, step.past), room);
+        memory[..n].copy_from_slice(&room.linear.content);
+        residual[..n].copy_from_slice(&room.linear.residual);
+        self.border_residual(step.t_s, step.z, &rates, &room.linear.loads, &mut residual[n..]);
+    }
+
+    /// Linearises the film for the rate `alpha c + past`.
+    pub(super) fn linearise_film(
         &self,
         t_s: f64,
         z: &[f64],
         velocity_m_s: [f64; 2],
         (alpha, past): (f64, &[f64]),
         room: &mut BearingRoom,
-        into: &mut BearingFactors,
-    ) -> Result<(), Singular> {
-        let (l, n) = (self.layout, self.layout.n);
-        let (BearingFactors { system, carry }, BearingRoom { linear, shape }) = (into, room);
+    ) {
+        let BearingRoom { linear, shape } = room;
         let site = self.site(t_s, self.input(t_s, z, velocity_m_s), shape);
         self.setup.film.linearise(&site, self.film_unknowns(z), alpha, past, linear);
+    }
+
+    /// Enters the linearised film into the matrix of the step.
+    pub(super) fn enter(&self, t_s: f64, alpha: f64, linear: &mut FilmLinear, into: &mut BearingFactors) {
+        let (l, n) = (self.layout, self.layout.n);
+        let BearingFactors { system, carry } = into;
         system.columns.fill(0.0);
         system.rows.fill(0.0);
         system.columns[..l.motions * n].copy_from_slice(&linear.columns);
@@ -355,7 +395,6 @@ impl JournalBearing {
         }
         self.fill_corner(t_s, alpha, linear, system);
         std::mem::swap(carry, &mut linear.carry);
-        system.factor(&linear.stencil)
     }
 
     /// Share of a motion that leaves enough of every gap.

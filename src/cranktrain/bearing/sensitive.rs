@@ -53,6 +53,16 @@ impl JournalBearing {
         }
     }
 
+    fn fix_film(&self, at: At, outputs: bool, into: &mut BearingPoint) {
+        let mut room = Vec::new();
+        let site = self.film_site(at, &mut room);
+        into.input = site.input;
+        into.journal_angle_rad = site.journal_angle_rad;
+        into.shape_m.clear();
+        into.shape_m.extend_from_slice(site.shape_m);
+        self.setup.film.fix(&site, self.film_unknowns(at.z), outputs, &mut into.film);
+    }
+
     /// Weights on the film's outputs for weights on the bearing's.
     fn film_weights(&self, w: &[f64]) -> FilmOutput {
         let at = |o: BearingOutput| w[o.index()];
@@ -80,13 +90,11 @@ impl SensitiveDae for JournalBearing {
     }
 
     fn fix(&self, at: At, into: &mut BearingPoint) {
-        let mut room = Vec::new();
-        let site = self.film_site(at, &mut room);
-        into.input = site.input;
-        into.journal_angle_rad = site.journal_angle_rad;
-        into.shape_m.clear();
-        into.shape_m.extend_from_slice(site.shape_m);
-        self.setup.film.fix(&site, self.film_unknowns(at.z), &mut into.film);
+        self.fix_film(at, true, into);
+    }
+
+    fn fix_balance(&self, at: At, into: &mut BearingPoint) {
+        self.fix_film(at, false, into);
     }
 
     fn factor(
@@ -97,7 +105,9 @@ impl SensitiveDae for JournalBearing {
         into: &mut BearingFactors,
     ) -> Result<(), Singular> {
         // The matrix knows the contents only through alpha; of the rates it needs the journal's velocity alone.
-        self.assemble(at.t_s, at.z, self.film_input(at).velocity_m_s, (alpha, &[]), room, into)
+        self.linearise_film(at.t_s, at.z, self.film_input(at).velocity_m_s, (alpha, &[]), room);
+        self.enter(at.t_s, alpha, &mut room.linear, into);
+        into.system.factor(&room.linear.stencil)
     }
 
     fn solve_transposed(&self, factors: &BearingFactors, rhs: &mut [f64]) {

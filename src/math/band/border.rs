@@ -73,9 +73,10 @@ impl CyclicBand {
     #[inline(always)]
     pub(super) fn border<A: Arithmetic>(&self, x: &mut [f64]) {
         let (x1, x2) = x.split_at_mut(self.rows);
-        for (from, to) in self.z_ranges() {
-            for (z, x2) in self.z.chunks_exact(4 * self.padded).zip(x2.chunks_mut(4)) {
-                let z = four(z, self.padded, from, 0, to - from);
+        for (part, (from, to)) in self.z_ranges().into_iter().enumerate() {
+            let (storage, width, at) = self.z_storage(part);
+            for (z, x2) in storage.chunks_exact(4 * width.max(1)).zip(x2.chunks_mut(4)) {
+                let z = four(z, width, at, 0, to - from);
                 let mut t = [0.0; 4];
                 minus_dots::<A>(&mut t, z, &x1[from..to]);
                 x2.iter_mut().zip(t).for_each(|(x, t)| *x += t);
@@ -89,9 +90,10 @@ impl CyclicBand {
     pub(super) fn border_transposed<A: Arithmetic>(&self, x: &mut [f64]) {
         let (x1, x2) = x.split_at_mut(self.rows);
         dense_solve_transposed(&self.schur, self.stride, x2);
-        for (from, to) in self.z_ranges() {
-            for (z, x2) in self.z.chunks_exact(4 * self.padded).zip(x2.chunks(4)) {
-                let z = four(z, self.padded, from, 0, to - from);
+        for (part, (from, to)) in self.z_ranges().into_iter().enumerate() {
+            let (storage, width, at) = self.z_storage(part);
+            for (z, x2) in storage.chunks_exact(4 * width.max(1)).zip(x2.chunks(4)) {
+                let z = four(z, width, at, 0, to - from);
                 let m = [0, 1, 2, 3].map(|q| x2.get(q).copied().unwrap_or(0.0));
                 update::<A, 4, 1>([&mut x1[from..to]], [m], z);
             }
@@ -100,9 +102,19 @@ impl CyclicBand {
 
     /// The two stretches of columns in which `Z` is occupied.
     #[inline(always)]
-    fn z_ranges(&self) -> [(usize, usize); 2] {
+    pub(super) fn z_ranges(&self) -> [(usize, usize); 2] {
         let (from, to) = self.z_gap;
         [(0, from), (to, self.rows)]
+    }
+
+    /// Where a stretch of `Z` stands: storage, length of a row, first column.
+    #[inline(always)]
+    fn z_storage(&self, part: usize) -> (&[f64], usize, usize) {
+        let (gap, until) = self.z_gap;
+        match &self.packed {
+            Some(packed) => (packed.z(), gap + self.rows - until, if part == 0 { 0 } else { gap }),
+            None => (&self.z, self.padded, if part == 0 { 0 } else { until }),
+        }
     }
 
     /// A cut ring: the border depends on nothing, so it is known first.

@@ -4,12 +4,12 @@
 //! [`fastest`] therefore compiles each job twice and picks AVX2 with fused multiply-add where the processor has it.
 
 /// `c - a b`, rounded once or twice.
-pub(super) trait Arithmetic {
+pub(in crate::math) trait Arithmetic {
     fn minus(c: f64, a: f64, b: f64) -> f64;
 }
 
-pub(super) struct Plain;
-pub(super) struct Fused;
+pub(in crate::math) struct Plain;
+pub(in crate::math) struct Fused;
 
 impl Arithmetic for Plain {
     #[inline(always)]
@@ -26,13 +26,13 @@ impl Arithmetic for Fused {
 }
 
 /// Work that can be compiled for either [`Arithmetic`]; `run` and all it calls must be `#[inline(always)]`.
-pub(super) trait Job {
+pub(in crate::math) trait Job {
     type Output;
     fn run<A: Arithmetic>(self) -> Self::Output;
 }
 
 /// Runs `job` with the best instructions of this processor; the choice is the same for every call on one machine.
-pub(super) fn fastest<J: Job>(job: J) -> J::Output {
+pub(in crate::math) fn fastest<J: Job>(job: J) -> J::Output {
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]

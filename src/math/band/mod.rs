@@ -23,7 +23,8 @@ mod block;
 mod border;
 mod eliminate;
 mod enter;
-mod kernels;
+pub(super) mod kernels;
+mod pack;
 mod stencil;
 mod substitute;
 #[cfg(test)]
@@ -80,35 +81,50 @@ pub struct CyclicBand {
     /// `L U` of the border's Schur complement.
     schur: Aligned,
     census: Vec<Census>,
+    /// The factors without their zeros, if they were packed; band, `y` and `z` are empty then.
+    packed: Option<pack::Packed>,
 }
 
 impl CyclicBand {
     /// Room for `blocks >= 3` blocks of `b` unknowns.
     pub fn new(blocks: usize, b: usize) -> Self {
+        let empty = Self::sized(blocks, b);
+        Self {
+            band: Aligned::zeros(empty.padded * empty.w),
+            groups: vec![Group { l: (0, 0), u: (0, 0), y: (0, 0) }; empty.padded / 4],
+            y: Aligned::zeros(empty.padded * empty.stride),
+            z: Aligned::zeros(empty.stride * empty.padded),
+            census: vec![Census::default(); blocks],
+            ..empty
+        }
+    }
+
+    /// Everything but the room for the factors.
+    fn sized(blocks: usize, b: usize) -> Self {
         assert!(blocks >= 3 && b >= 1, "a cyclic band needs at least 3 blocks");
         let rows = (blocks - 1) * b;
-        let padded = rows.next_multiple_of(4);
         let stride = b.next_multiple_of(4);
         let left = (b + 4).next_multiple_of(4);
         Self {
             blocks,
             b,
             rows,
-            padded,
+            padded: rows.next_multiple_of(4),
             stride,
             w: left + stride + 5,
             left,
             start: 0,
             first_coupled: false,
             cut: false,
-            band: Aligned::zeros(padded * (left + stride + 5)),
-            groups: vec![Group { l: (0, 0), u: (0, 0), y: (0, 0) }; padded / 4],
-            y: Aligned::zeros(padded * stride),
-            z: Aligned::zeros(stride * padded),
+            band: Aligned::zeros(0),
+            groups: Vec::new(),
+            y: Aligned::zeros(0),
+            z: Aligned::zeros(0),
             z_gap: (0, 0),
             edge: vec![0.0; 2 * b],
             schur: Aligned::zeros(stride * stride),
-            census: vec![Census::default(); blocks],
+            census: Vec::new(),
+            packed: None,
         }
     }
 
@@ -131,7 +147,11 @@ impl CyclicBand {
     }
 
     /// Factorises `a`.
+    ///
+    /// # Panics
+    /// If this is a [`Self::keeper`].
     pub fn factor(&mut self, a: &Stencil) -> Result<(), Singular> {
+        assert!(!self.band.is_empty(), "a keeper has no room to factorise in");
         let border = border::choose(a, self.b, &mut self.census);
         self.start = (border + 1) % self.blocks * self.b;
         let couples = |side: &[f64]| side[border * self.b..(border + 1) * self.b].iter().any(|&v| v != 0.0);

@@ -78,21 +78,34 @@ impl Job for Solve<'_> {
 }
 
 /// What a substitution reads of one group of rows.
-struct Rows<'a> {
-    at: Group,
-    l: [&'a [f64]; 4],
-    u: [&'a [f64]; 4],
-    y: [&'a [f64]; 4],
-    inverse: [[f64; 4]; 4],
+pub(super) struct Rows<'a> {
+    pub(super) at: Group,
+    pub(super) l: [&'a [f64]; 4],
+    pub(super) u: [&'a [f64]; 4],
+    pub(super) y: [&'a [f64]; 4],
+    pub(super) inverse: [[f64; 4]; 4],
 }
 
 impl CyclicBand {
+    /// Ranges of a group that hold anything.
     #[inline(always)]
-    fn group(&self, k: usize) -> Rows<'_> {
+    pub(super) fn ranges(&self, k: usize) -> Group {
         let mut at = self.groups[k / 4];
         // Whole vectors may reach beyond what there is.
-        at.u.1 = at.u.1.min(k + 4 + self.b).min(self.rows);
-        at.y.1 = at.y.1.min(self.b);
+        at.u.1 = at.u.1.min(k + 4 + self.b).min(self.rows).max(at.u.0);
+        at.y.1 = at.y.1.min(self.b).max(at.y.0);
+        at
+    }
+
+    #[inline(always)]
+    pub(super) fn group(&self, k: usize) -> Rows<'_> {
+        let at = self.ranges(k);
+        if let Some(packed) = &self.packed {
+            let [l, inverse, u, y] = packed.group(k / 4);
+            let block = std::array::from_fn(|q| std::array::from_fn(|c| inverse[4 * q + c]));
+            let [l, u, y] = [l, u, y].map(|of| four(of, of.len() / 4, 0, 0, of.len() / 4));
+            return Rows { at, l, u, y, inverse: block };
+        }
         let (w, stride) = (self.w, self.stride);
         let rows = &self.band[k * w..(k + 4) * w];
         Rows {
