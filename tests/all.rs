@@ -11,6 +11,7 @@ mod every_parameter;
 mod film_derivatives;
 mod gradient_check;
 mod gradients;
+mod hock_schittkowski;
 mod literature;
 mod main_job;
 mod orbits;

@@ -20,10 +20,10 @@ impl Values {
         self.equalities.iter().fold(above, |a, g| a.max(g.abs()))
     }
 
-    /// Sum of all violations.
-    pub(super) fn total_violation(&self) -> f64 {
-        let above: f64 = self.inequalities.iter().map(|c| c.max(0.0)).sum();
-        above + self.equalities.iter().map(|g| g.abs()).sum::<f64>()
+    /// Sum of all violations with a weight each, inequalities first.
+    pub(super) fn weighted_violation(&self, weights: &[f64]) -> f64 {
+        let above = self.inequalities.iter().map(|c| c.max(0.0));
+        above.chain(self.equalities.iter().map(|g| g.abs())).zip(weights).map(|(v, mu)| mu * v).sum()
     }
 }
 

@@ -1,7 +1,8 @@
 //! Sequential quadratic programming with damped BFGS, an l1 merit function and second-order correction.
 //!
 //! Each iteration solves one sub-problem ([`super::qp`]) for a step `d` and multipliers, then searches along `d` on
-//! `f + mu (sum max(c, 0) + sum |g|)`; if the full step is refused because the constraints curve, it is corrected once with
+//! `f + sum mu max(c, 0) + sum mu |g|`, where each weight `mu` follows the multiplier of its constraint up at once and down by halves
+//! (Powell 1978); if the full step is refused because the constraints curve, it is corrected once with
 //! their values there. A point that cannot be evaluated counts as a refused trial: the step is halved. Gradients are asked
 //! at accepted points only. The Hessian follows Powell's damped BFGS update (1978) and starts from the scaled unit matrix.
 //!
@@ -40,7 +41,7 @@ pub struct SqpOptions {
     pub tolerance: f64,
     /// Iterations at most.
     pub max_iterations: u64,
-    /// Longest change of a scaled variable in one iteration.
+    /// Longest change of a scaled variable in the first iteration; it doubles whenever a step of that length was taken whole.
     pub step_limit: f64,
 }
 
@@ -108,16 +109,21 @@ pub fn minimise<P: ConstrainedProblem + ?Sized>(
         .configure(|state: SqpState| state.start(s.clone()).max_iters(options.max_iterations))
         .ctrlc(false)
         .run()?;
-    let state = result.state;
-    let operator = result.problem.problem.ok_or_else(|| Error::msg("argmin lost the problem"))?;
+    let (mut problem, mut state) = (result.problem, result.state);
+    settle_last(options, &mut problem, &mut state);
+    let operator = problem.problem.ok_or_else(|| Error::msg("argmin lost the problem"))?;
     let (x, values, kkt, multipliers) = match state.incumbent {
         Some(best) => (best.x, Some(best.values), best.kkt, best.multipliers),
         None => (s, None, f64::INFINITY, Multipliers::default()),
     };
-    let count = |name: &str| result.problem.counts.get(name).copied().unwrap_or(0);
+    let count = |name: &str| problem.counts.get(name).copied().unwrap_or(0);
     let restore = |v: Vec<f64>| v.into_iter().map(|m| m * scale).collect();
     Ok(Minimum {
-        outcome: state.outcome.unwrap_or(Outcome::IterationLimit),
+        outcome: state.outcome.unwrap_or(if kkt <= options.tolerance {
+            Outcome::Converged
+        } else {
+            Outcome::IterationLimit
+        }),
         x: operator.scaled.to_true(&x),
         values: values.map(|v| Values { objective: v.objective * scale, ..v }),
         multipliers: Multipliers {
@@ -132,6 +138,22 @@ pub fn minimise<P: ConstrainedProblem + ?Sized>(
         evaluations: count("evaluations"),
         gradients: count("gradients"),
     })
+}
+
+/// At the iteration limit nothing has yet judged the last point; its sub-problem costs no evaluation.
+fn settle_last<P: ConstrainedProblem + ?Sized>(
+    options: SqpOptions,
+    problem: &mut Problems<'_, P>,
+    state: &mut SqpState,
+) {
+    let Some(now) = state.iterate.clone().filter(|_| state.outcome.is_none()) else { return };
+    let qp = Sqp::new(options).sub_problem(problem, &now, &state.hessian, &now.values, state.radius);
+    if let Some(qp) = qp {
+        state.kkt = kkt(&now, &qp);
+        state.multipliers = qp.multipliers;
+        report(problem, state, &now);
+        state.judge(state.kkt <= options.tolerance);
+    }
 }
 
 type Problems<'p, P> = Problem<Operator<'p, P>>;
@@ -149,6 +171,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
         let x = state.start_point().ok_or_else(|| Error::msg("no start"))?.to_vec();
         let n = x.len();
         state.hessian = DMatrix::identity(n, n);
+        state.radius = self.options.step_limit;
         let values = match evaluate(problem, &x) {
             Ok(values) => values,
             Err(e) => return Ok((refuse(state, e, Outcome::StartFailed), None)),
@@ -167,7 +190,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
         mut state: SqpState,
     ) -> Result<(SqpState, Option<KV>), Error> {
         let Some(now) = state.iterate.clone() else { return Ok((state.end(Outcome::StartFailed), None)) };
-        let Some(qp) = self.sub_problem(problem, &now, &state.hessian, &now.values) else {
+        let Some(qp) = self.sub_problem(problem, &now, &state.hessian, &now.values, state.radius) else {
             return Ok((self.give_up(state), None));
         };
         state.kkt = kkt(&now, &qp);
@@ -185,13 +208,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
         if qp.elastic && size < 1e-8 && now.values.violation() > self.options.tolerance {
             return Ok((state.end(Outcome::Infeasible), None));
         }
-        let largest = qp
-            .multipliers
-            .inequalities
-            .iter()
-            .chain(&qp.multipliers.equalities)
-            .fold(0.0f64, |a, m| a.max(m.abs()));
-        state.penalty = state.penalty.max(1.5 * largest).max(1e-3);
+        state.weigh(&qp.multipliers);
         match self.accept(problem, &mut state, &now, &qp) {
             Err(EvaluationError::Cancelled) => Ok((state.end(Outcome::Cancelled), None)),
             Err(EvaluationError::Failed(_)) if !state.fresh_hessian => {
@@ -203,7 +220,12 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
             Err(EvaluationError::Failed(_)) => Ok((self.give_up(state), None)),
             Ok(next) => {
                 update_hessian(&mut state, &now, &next);
+                let full = size >= 0.99 * state.radius;
                 state.last_step = next.x.iter().zip(&now.x).fold(0.0, |a, (b, c)| a.max((b - c).abs()));
+                // A whole step to the limit that was taken at once asks for a longer one.
+                if full && state.last_step >= 0.99 * state.radius {
+                    state.radius *= 2.0;
+                }
                 state.stalled = if state.last_step < STILL { state.stalled + 1 } else { 0 };
                 state.iterate = Some(next);
                 state.remember(self.options.tolerance.max(FEASIBLE));
@@ -230,9 +252,10 @@ impl Sqp {
         now: &Iterate,
         hessian: &DMatrix<f64>,
         values: &Values,
+        radius: f64,
     ) -> Option<QpSolution> {
         let scaled = &problem.problem.as_ref()?.scaled;
-        let limit = self.options.step_limit;
+        let limit = radius;
         let lower: Vec<f64> = now.x.iter().zip(&scaled.lower).map(|(x, l)| (l - x).max(-limit)).collect();
         let upper: Vec<f64> = now.x.iter().zip(&scaled.upper).map(|(x, u)| (u - x).min(limit)).collect();
         Qp { hessian, values, slopes: &now.slopes, lower: &lower, upper: &upper }.solve()
@@ -267,11 +290,12 @@ impl Sqp {
         qp: &QpSolution,
         longest: f64,
     ) -> Result<(Vec<f64>, Values, f64), EvaluationError> {
-        let mu = state.penalty;
-        let merit = |v: &Values| v.objective + mu * v.total_violation();
+        let penalties = state.penalties.clone();
+        let missed = |v: &Values| v.weighted_violation(&penalties);
+        let merit = |v: &Values| v.objective + missed(v);
         let here = merit(&now.values);
-        let slope = dot(&now.slopes.objective, &qp.step)
-            - mu * (now.values.total_violation() - linearised(now, &qp.step).total_violation());
+        let slope =
+            dot(&now.slopes.objective, &qp.step) - (missed(&now.values) - missed(&linearised(now, &qp.step)));
         let enough = |v: &Values, share: f64| {
             merit(v) <= here + ARMIJO * share * slope.min(0.0) + ROUNDING * here.abs()
         };
@@ -286,7 +310,7 @@ impl Sqp {
                 }
                 Ok(values) if enough(&values, share) => return Ok((x, values, share)),
                 Ok(values) => {
-                    let curved = share == 1.0 && values.total_violation() > now.values.total_violation();
+                    let curved = share == 1.0 && missed(&values) > missed(&now.values);
                     if curved
                         && let Some(found) = self.corrected(problem, state, now, qp, &values, &enough)?
                     {
@@ -320,7 +344,9 @@ impl Sqp {
             inequalities: shifted(&now.slopes.inequalities, &there.inequalities),
             equalities: shifted(&now.slopes.equalities, &there.equalities),
         };
-        let Some(again) = self.sub_problem(problem, now, &state.hessian, &values) else { return Ok(None) };
+        let Some(again) = self.sub_problem(problem, now, &state.hessian, &values, state.radius) else {
+            return Ok(None);
+        };
         let x = moved(problem, &now.x, &again.step, 1.0);
         match evaluate(problem, &x) {
             Ok(values) if enough(&values, 1.0) => Ok(Some((x, values))),

@@ -7,6 +7,11 @@ use nalgebra::DMatrix;
 use std::collections::HashMap;
 use std::time::Duration;
 
+/// A weight exceeds its multiplier by this factor, so that steps of the sub-problem descend.
+const MARGIN: f64 = 1.5;
+/// Smallest weight of a violation, in units of the scaled objective.
+const LEAST_PENALTY: f64 = 1e-3;
+
 /// Lagrange multipliers.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Multipliers {
@@ -47,7 +52,10 @@ pub struct SqpState {
     pub(super) hessian: DMatrix<f64>,
     pub(super) fresh_hessian: bool,
     pub(super) multipliers: Multipliers,
-    pub(super) penalty: f64,
+    /// Weights of the violations in the merit function: inequalities, then equalities.
+    pub(super) penalties: Vec<f64>,
+    /// Longest change of a scaled variable in one iteration.
+    pub(super) radius: f64,
     pub(super) kkt: f64,
     pub(super) last_step: f64,
     pub(super) stalled: u32,
@@ -92,6 +100,16 @@ impl SqpState {
         self.terminate_with(reason)
     }
 
+    /// Lets the weights of the merit function follow new multipliers (Powell 1978).
+    pub(super) fn weigh(&mut self, multipliers: &Multipliers) {
+        let all = multipliers.inequalities.iter().chain(&multipliers.equalities);
+        self.penalties.resize(multipliers.inequalities.len() + multipliers.equalities.len(), 0.0);
+        for (mu, multiplier) in self.penalties.iter_mut().zip(all) {
+            let size = (MARGIN * multiplier.abs()).max(LEAST_PENALTY);
+            *mu = size.max(0.5 * (*mu + size));
+        }
+    }
+
     /// Keeps the better of the incumbent and the iterate: smaller violation above `feasible`, then smaller objective.
     pub(super) fn remember(&mut self, feasible: f64) {
         let Some(now) = &self.iterate else { return };
@@ -127,7 +145,8 @@ impl State for SqpState {
             hessian: DMatrix::zeros(0, 0),
             fresh_hessian: true,
             multipliers: Multipliers::default(),
-            penalty: 0.0,
+            penalties: Vec::new(),
+            radius: f64::INFINITY,
             kkt: f64::INFINITY,
             last_step: 0.0,
             stalled: 0,
