@@ -101,6 +101,62 @@ pub struct RunContext<'a> {
     pub progress: &'a dyn Progress,
 }
 
+/// Keeps what a long computation knows, so that another process can go on where one was stopped. What it is given is opaque to it.
+pub trait Store: Sync {
+    /// What was saved last under a name, if anything.
+    fn load(&self, name: &str) -> Option<Vec<u8>>;
+    /// Replaces what is saved under a name; a failure only costs the chance to resume.
+    fn save(&self, name: &str, what: &[u8]);
+}
+
+/// Forgets.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoStore;
+
+impl Store for NoStore {
+    fn load(&self, _: &str) -> Option<Vec<u8>> {
+        None
+    }
+    fn save(&self, _: &str, _: &[u8]) {}
+}
+
+/// Files `<name>.checkpoint` in a folder. A file is written beside its place and moved there, so it is whole at any time.
+#[derive(Debug, Clone)]
+pub struct FolderStore(pub std::path::PathBuf);
+
+impl FolderStore {
+    const ENDING: &str = "checkpoint";
+
+    fn path(&self, name: &str) -> std::path::PathBuf {
+        self.0.join(format!("{name}.{}", Self::ENDING))
+    }
+
+    /// Removes all checkpoints: the computation is done, or is to start afresh.
+    pub fn clear(&self) {
+        let Ok(entries) = std::fs::read_dir(&self.0) else { return };
+        for path in entries.flatten().map(|e| e.path()) {
+            let old = path.extension().is_some_and(|e| e == Self::ENDING || e == "unfinished");
+            if old && let Err(e) = std::fs::remove_file(&path) {
+                eprintln!("warning: {}: {e}", path.display());
+            }
+        }
+    }
+}
+
+impl Store for FolderStore {
+    fn load(&self, name: &str) -> Option<Vec<u8>> {
+        std::fs::read(self.path(name)).ok()
+    }
+
+    fn save(&self, name: &str, what: &[u8]) {
+        let (path, beside) = (self.path(name), self.0.join(format!("{name}.unfinished")));
+        let done = std::fs::write(&beside, what).and_then(|()| std::fs::rename(&beside, &path));
+        if let Err(e) = done {
+            eprintln!("warning: this run cannot be resumed: {}: {e}", path.display());
+        }
+    }
+}
+
 /// Work done, counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Cost {

@@ -17,6 +17,7 @@ mod main_job;
 mod orbits;
 mod own_model;
 mod recording;
+mod resume;
 mod sensitivity;
 mod study_physics;
 

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::optimise::EvaluationError;
 use crate::report::{self, Characteristic, CharacteristicStatus, Comparison, ComparisonStatus};
-use crate::run::{Cancel, RunContext};
+use crate::run::{Cancel, FolderStore, RunContext};
 use crate::study::{Format, Study, StudyErrors, Sweep, compare, compare_engines, prove};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -93,9 +93,16 @@ pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
         bars.finish();
         return compared(&found, &folder, a.json);
     }
-    let findings = crate::study::run(&study, context);
+    let store = FolderStore(folder.clone());
+    if a.fresh {
+        store.clear();
+    }
+    let findings = crate::study::run_saved(&study, context, &store);
     bars.finish();
     report::write_folder(&findings, &folder).map_err(|e| Stop::File(folder.clone(), e))?;
+    if findings.report.outcome.status != crate::optimise::Outcome::Cancelled {
+        store.clear();
+    }
     if a.json {
         put(&(serde_json::to_string_pretty(&findings.report).unwrap_or_default() + "\n"));
     } else {

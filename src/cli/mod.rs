@@ -74,6 +74,9 @@ struct RunArguments {
     /// Folder for report.html, report.json and CSV files [default: out/<name of the study file>].
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
+    /// Start over, even if an earlier run of this study was stopped in the same folder; without it, a run goes on from there.
+    #[arg(long)]
+    fresh: bool,
     /// Print the report as JSON instead of a table.
     #[arg(long)]
     json: bool,

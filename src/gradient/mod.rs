@@ -113,7 +113,7 @@ fn varied<M: SensitiveDae>(model: &M, at: &Orbit) -> usize {
 }
 
 /// Derivatives of quantities (rows) by parameters (columns), SI units.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GradientTable {
     /// One row per quantity, one entry per parameter.
     pub rows: Vec<Vec<f64>>,

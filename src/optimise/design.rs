@@ -1,8 +1,13 @@
 //! A constrained problem made of periodic models: every case is one bearing at one operating point.
 //!
 //! The objective is a weighted sum of quantities, one row of constraints belongs to each limit. Evaluated designs are
-//! remembered by the bits of their parameters; the cycles of the latest designs are kept to start the next ones and to be
-//! differentiated. Cases run in parallel; their results do not depend on how.
+//! remembered by the bits of their parameters, and so are their gradients; the cycles of the latest designs are kept to be
+//! differentiated. New designs start from the cycle of the one differentiated last (the search's place), whatever was tried in
+//! between. Cases run in parallel; their results do not depend on how.
+//!
+//! All that a problem remembers can be written down ([`DesignProblem::snapshot`]) and given to another process. A search
+//! that starts over on it finds every answer it had, without a simulation, arrives where it was and goes on to the same
+//! numbers: no optimiser needs a state of its own on disk.
 
 use super::{ConstrainedProblem, EvaluationError, Slopes, Values};
 use crate::dae::SensitiveDae;
@@ -10,7 +15,8 @@ use crate::gradient::{GradientEngine, GradientError, GradientTable};
 use crate::orbit::{Orbit, OrbitError, OrbitOptions, Quantity, settle};
 use crate::run::{Cost, Event, IterationEvent, RunContext};
 use rayon::prelude::*;
-use std::collections::{HashMap, VecDeque};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 /// Designs whose cycles are kept.
@@ -63,7 +69,7 @@ impl Limit {
 }
 
 /// A simulated design.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Evaluated {
     /// Settled cycle of each case.
     pub orbits: Vec<Orbit>,
@@ -78,14 +84,21 @@ pub struct DesignProblem<'r, M: SensitiveDae> {
     engine: Box<dyn GradientEngine<M>>,
     run: RunContext<'r>,
     memory: Mutex<Memory>,
+    /// Called with a snapshot at accepted designs.
+    save: Option<Box<dyn Fn(&[u8]) + Send + Sync + 'r>>,
+    /// Work done when the last snapshot was taken.
+    saved: Mutex<(Cost, Cost)>,
 }
 
 type Key = Vec<u64>;
 
-#[derive(Default)]
+#[derive(Default, Clone, Serialize, Deserialize)]
 struct Memory {
-    values: HashMap<Key, Result<Values, EvaluationError>>,
+    values: BTreeMap<Key, Result<Values, EvaluationError>>,
+    slopes: BTreeMap<Key, Slopes>,
     orbits: VecDeque<(Key, Arc<Evaluated>)>,
+    /// The design differentiated last: where new ones start.
+    base: Option<Arc<Evaluated>>,
     /// Gradients of the design differentiated last: the search, the curvature and the report ask for the same ones.
     tables: Option<(Key, Arc<Vec<GradientTable>>)>,
     cost: Cost,
@@ -102,7 +115,13 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
         run: RunContext<'r>,
     ) -> Self {
         let (lower, upper) = bounds;
-        Self { cases, limits, lower, upper, engine, run, memory: Mutex::default() }
+        let (memory, saved) = Default::default();
+        Self { cases, limits, lower, upper, engine, run, memory, save: None, saved }
+    }
+
+    /// Hands a snapshot to `save` whenever a design was accepted and something new is known.
+    pub fn saved_by(&mut self, save: impl Fn(&[u8]) + Send + Sync + 'r) {
+        self.save = Some(Box::new(save));
     }
 
     /// The cases.
@@ -131,7 +150,7 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
             if let Some((_, known)) = memory.orbits.iter().find(|(k, _)| *k == key) {
                 return Ok(known.clone());
             }
-            memory.orbits.front().map(|(_, latest)| latest.clone())
+            memory.base.clone().or_else(|| memory.orbits.back().map(|(_, first)| first.clone()))
         };
         let orbits: Result<Vec<Orbit>, EvaluationError> = (0..self.cases.len())
             .into_par_iter()
@@ -181,6 +200,27 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
         Ok(tables)
     }
 
+    /// All that is known, for another process; a format of this version of the program.
+    pub fn snapshot(&self) -> Vec<u8> {
+        let memory = self.lock().clone();
+        postcard::to_stdvec(&memory).unwrap_or_default()
+    }
+
+    /// Takes over what another process knew; whether it could be read.
+    pub fn restore(&self, snapshot: &[u8]) -> bool {
+        let found = postcard::from_bytes::<Memory>(snapshot);
+        let usable = found.as_ref().is_ok_and(|m| {
+            let fits = |e: &Evaluated| e.orbits.len() == self.cases.len();
+            m.orbits.iter().all(|(_, e)| fits(e)) && m.base.iter().all(|e| fits(e))
+        });
+        if let (Ok(memory), true) = (found, usable) {
+            *self.saved.lock().unwrap_or_else(std::sync::PoisonError::into_inner) =
+                (memory.cost, memory.gradient_cost);
+            *self.lock() = memory;
+        }
+        usable
+    }
+
     fn lock(&self) -> MutexGuard<'_, Memory> {
         self.memory.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
@@ -224,6 +264,15 @@ impl<M: SensitiveDae> ConstrainedProblem for DesignProblem<'_, M> {
     }
 
     fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
+        {
+            let mut memory = self.lock();
+            let (key, there) =
+                (key(x), memory.orbits.iter().find(|(k, _)| *k == key(x)).map(|o| o.1.clone()));
+            if let Some(known) = memory.slopes.get(&key).cloned() {
+                memory.base = there.or_else(|| memory.base.clone());
+                return Ok(known);
+            }
+        }
         let at = self.evaluated(x)?;
         let tables = self.tables(x)?;
         let n = x.len();
@@ -239,15 +288,23 @@ impl<M: SensitiveDae> ConstrainedProblem for DesignProblem<'_, M> {
             self.scatter(l.case, &tables[l.case].rows[l.quantity], l.constraint(value).1, &mut row);
             row
         };
-        Ok(Slopes {
-            objective,
-            inequalities: self.limits.iter().map(constraint).collect(),
-            equalities: Vec::new(),
-        })
+        let inequalities = self.limits.iter().map(constraint).collect();
+        let slopes = Slopes { objective, inequalities, equalities: Vec::new() };
+        let mut memory = self.lock();
+        memory.slopes.insert(key(x), slopes.clone());
+        memory.base = Some(at);
+        Ok(slopes)
     }
 
     fn accepted(&self, news: &IterationEvent) {
         self.run.progress.tell(&Event::Iteration(*news));
+        let Some(save) = &self.save else { return };
+        let costs = self.costs();
+        let mut saved = self.saved.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if *saved != costs {
+            save(&self.snapshot());
+            *saved = costs;
+        }
     }
 }
 

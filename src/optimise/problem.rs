@@ -1,9 +1,10 @@
 //! The abilities a problem needs to be optimised, and its form in scaled variables.
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// Objective and constraint values at a point. Constraints should be scaled to order one: one tolerance judges them all.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Values {
     /// `f`.
     pub objective: f64,
@@ -28,7 +29,7 @@ impl Values {
 }
 
 /// Gradients of objective and constraints.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Slopes {
     /// Gradient of `f`.
     pub objective: Vec<f64>,
@@ -39,7 +40,7 @@ pub struct Slopes {
 }
 
 /// A point at which the problem has no value.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error, Serialize, Deserialize)]
 pub enum EvaluationError {
     /// The point cannot be evaluated; the optimiser shortens its step.
     #[error("{0}")]

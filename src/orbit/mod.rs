@@ -28,8 +28,10 @@ pub use settle::{Orbit, OrbitError, OrbitOptions, settle};
 pub(crate) use window::BLOCK;
 pub use window::{Recording, Window};
 
+use serde::{Deserialize, Serialize};
+
 /// Backward difference formula.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Scheme {
     /// Implicit Euler, first order, strongly damping.
     Bdf1,

@@ -5,6 +5,7 @@ use super::march::March;
 use super::{Quantity, Recording, Scheme};
 use crate::dae::{Dae, InvalidParameters, LinearisedDae};
 use crate::run::{Cancel, Cancelled, Cost};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// How a cycle is computed.
@@ -63,7 +64,7 @@ pub enum OrbitError {
 }
 
 /// A settled cycle.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Orbit {
     /// Difference formula.
     pub scheme: Scheme,

@@ -61,7 +61,7 @@ pub use plans::{
     SupplyPlan,
 };
 pub use prove::prove;
-pub use run::run;
+pub use run::{run, run_saved};
 pub use schema::schema;
 
 pub use variables::Variable;

@@ -13,7 +13,7 @@ use crate::report::{
     GradientReport, GradientRow, KktReport, ObjectiveReport, OutcomeReport, Provenance, REPORT_FORMAT,
     Report,
 };
-use crate::run::{Cancel, Event, RunContext};
+use crate::run::{Cancel, Event, NoStore, RunContext, Store};
 use crate::units::tidy;
 use std::sync::Arc;
 use std::time::Instant;
@@ -31,10 +31,22 @@ const TAYLOR: (f64, usize) = (1e-4, 6);
 
 /// Runs a study to its end, whatever that is: failures to converge are outcomes in the report.
 pub fn run(study: &Study, context: RunContext<'_>) -> Findings {
+    run_saved(study, context, &NoStore)
+}
+
+/// The same with checkpoints: a run that was stopped goes on where it was, to the same report.
+pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Store) -> Findings {
     let began = Instant::now();
     let stage = |name: &str| context.progress.tell(&Event::Stage { name: name.to_owned() });
     stage("optimising");
-    let search = match plan(study, study.engine, context) {
+    let planned = plan(study, study.engine, context).map(|mut plan| {
+        let known = resume(study, &mut plan, "search", store);
+        if known > 0 {
+            stage(&format!("going on where the last run stopped, with {known} simulations known"));
+        }
+        plan
+    });
+    let search = match planned {
         Ok(plan) => match minimise(&plan.problem, &plan.start, study.optimiser) {
             Ok(minimum) => Ok((plan, minimum)),
             Err(e) => Err(e.to_string()),
@@ -48,6 +60,17 @@ pub fn run(study: &Study, context: RunContext<'_>) -> Findings {
     stage("checking the design");
     let known = minimum.values.as_ref().and_then(|_| revisit(study, &plan, &minimum, context));
     report(study, &plan, &minimum, known, context, began)
+}
+
+/// Lets a plan save what it knows, and gives it what was saved of the same study by the same program; returns the number of
+/// simulations that were known.
+pub(super) fn resume<'r>(study: &Study, plan: &mut Plan<'r>, name: &'r str, store: &'r dyn Store) -> u64 {
+    let head = format!("{} {} {name}\n", env!("CARGO_PKG_VERSION"), study.hash);
+    let found = store.load(name);
+    let rest = found.as_deref().and_then(|all| all.strip_prefix(head.as_bytes()));
+    let known = rest.is_some_and(|rest| plan.problem.restore(rest));
+    plan.problem.saved_by(move |snapshot| store.save(name, &[head.as_bytes(), snapshot].concat()));
+    if known { plan.problem.costs().0.simulations } else { 0 }
 }
 
 /// Cycles at start and optimum.
