@@ -35,7 +35,10 @@ fn study(folder: &Path) -> std::path::PathBuf {
     for (from, to) in [
         ("[oil]", COARSE),
         ("name = \"big_end.width\"", "name = \"big_end.width\"\nstart = \"50 mm\""),
-        ("name = \"big_end.diametral_clearance\"", "name = \"big_end.diametral_clearance\"\nstart = \"90 um\""),
+        (
+            "name = \"big_end.diametral_clearance\"",
+            "name = \"big_end.diametral_clearance\"\nstart = \"90 um\"",
+        ),
     ] {
         assert!(text.contains(from));
         text = text.replace(from, to);

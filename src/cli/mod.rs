@@ -33,6 +33,7 @@ pub fn exit_code(outcome: Outcome) -> u8 {
         Outcome::AlmostConverged => 3,
         Outcome::IterationLimit => 4,
         Outcome::NoProgress => 5,
+        Outcome::BudgetSpent => 10,
         Outcome::Infeasible => 6,
         Outcome::StartFailed => 7,
         Outcome::Cancelled => 130,
@@ -45,7 +46,7 @@ pub fn exit_code(outcome: Outcome) -> u8 {
     name = "stribeck",
     version,
     after_help = "Exit codes: 0 converged, 1 file error, 2 mistakes in the study or command line, \
-3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 8 rows of a characteristic or parts of a comparison are missing, 9 a checked gradient is wrong, 130 cancelled."
+3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 8 rows of a characteristic or parts of a comparison are missing, 9 a checked gradient is wrong, 10 budget spent, 130 cancelled."
 )]
 struct Arguments {
     /// Threads to use [default: one per core]. The numbers do not depend on it.

@@ -12,6 +12,8 @@ pub enum Outcome {
     AlmostConverged,
     /// The iterations asked for are used up.
     IterationLimit,
+    /// The simulations or the time asked for are used up.
+    BudgetSpent,
     /// No step improves the design, far from a KKT point.
     NoProgress,
     /// No design in the box meets the constraints, as far as the linearisations tell.
@@ -35,6 +37,10 @@ impl Outcome {
                  Loosen optimiser.tolerance, refine the film mesh or use more steps per cycle."
             }
             Self::IterationLimit => "Raise optimiser.max_iterations, or start from this design.",
+            Self::BudgetSpent => {
+                "The best design found within optimiser.max_simulations or optimiser.max_time is reported. Raise them, or start \
+                 from this design."
+            }
             Self::NoProgress => {
                 "Check the gradient with 'stribeck gradient FILE --engine all'; use the adjoint engine, more steps per \
                  cycle or a finer film mesh, or start from another design."

@@ -28,9 +28,9 @@ const ROUNDING: f64 = 1e-12;
 const STILL: f64 = 1e-9;
 const STALLED: u32 = 3;
 /// Smallest violation that matters when points are compared.
-const FEASIBLE: f64 = 1e-7;
+pub(super) const FEASIBLE: f64 = 1e-7;
 /// KKT residual and violation at which a search that cannot go on counts as almost converged.
-const CLOSE: f64 = 1e-5;
+pub(super) const CLOSE: f64 = 1e-5;
 /// Powell's damping.
 const DAMPING: f64 = 0.2;
 
@@ -149,7 +149,7 @@ fn settle_last<P: ConstrainedProblem + ?Sized>(
     let Some(now) = state.iterate.clone().filter(|_| state.outcome.is_none()) else { return };
     let qp = Sqp::new(options).sub_problem(problem, &now, &state.hessian, &now.values, state.radius);
     if let Some(qp) = qp {
-        state.kkt = kkt(&now, &qp);
+        state.kkt = kkt_residual(&now.values, &now.slopes, &qp);
         state.multipliers = qp.multipliers;
         report(problem, state, &now);
         state.judge(state.kkt <= options.tolerance);
@@ -193,7 +193,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
         let Some(qp) = self.sub_problem(problem, &now, &state.hessian, &now.values, state.radius) else {
             return Ok((self.give_up(state), None));
         };
-        state.kkt = kkt(&now, &qp);
+        state.kkt = kkt_residual(&now.values, &now.slopes, &qp);
         state.multipliers = qp.multipliers.clone();
         report(problem, &mut state, &now);
         let converged = state.kkt <= self.options.tolerance;
@@ -454,17 +454,17 @@ fn lagrangian(slopes: &Slopes, multipliers: &Multipliers) -> DVector<f64> {
 
 /// Largest of stationarity, complementarity and violation at a point, with the multipliers of its sub-problem. A bound's
 /// multiplier counts against the step that is left: it must vanish unless the point stands on the bound.
-fn kkt(now: &Iterate, qp: &QpSolution) -> f64 {
+pub(super) fn kkt_residual(values: &Values, slopes: &Slopes, qp: &QpSolution) -> f64 {
     let m = &qp.multipliers;
-    let gradient = lagrangian(&now.slopes, m);
+    let gradient = lagrangian(slopes, m);
     let stationarity =
         (0..gradient.len()).fold(0.0f64, |a, j| a.max((gradient[j] - m.lower[j] + m.upper[j]).abs()));
     let complementarity =
-        now.values.inequalities.iter().zip(&m.inequalities).fold(0.0f64, |a, (c, m)| a.max((c * m).abs()));
+        values.inequalities.iter().zip(&m.inequalities).fold(0.0f64, |a, (c, m)| a.max((c * m).abs()));
     let bounds = (m.lower.iter().zip(&qp.step))
         .chain(m.upper.iter().zip(&qp.step))
         .fold(0.0f64, |a, (m, d)| a.max((m * d).abs()));
-    stationarity.max(complementarity).max(bounds).max(now.values.violation())
+    stationarity.max(complementarity).max(bounds).max(values.violation())
 }
 
 /// Damped BFGS update with the change of the Lagrangian's gradient.
