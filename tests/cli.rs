@@ -220,3 +220,27 @@ fn run_compares_engines_if_the_study_asks_for_it() {
         assert!(out.join(name).metadata().unwrap().len() > 100, "{name}");
     }
 }
+
+#[test]
+fn several_starts_and_rivals_are_reported_and_a_budget_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("answer");
+    let many = "[optimiser]\nstarts = 4\nrivals = [{ method = \"augmented-lagrangian\" }, { method = \"cobyla\" }]\n[oil]";
+    let file = study(&folder, &[QUICK, ("[oil]", many)]);
+    let run = stribeck().arg("run").arg(&file).arg("--json").arg("--out").arg(&out).assert().success();
+    let report: serde_json::Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    let optima = report["starts"]["optima"].as_array().unwrap();
+    assert_eq!(optima.iter().map(|o| o["found"].as_u64().unwrap()).sum::<u64>(), 4, "{optima:#?}");
+    let best = report["objective"]["optimum"]["total_w"].as_f64().unwrap();
+    assert!((optima[0]["loss_w"].as_f64().unwrap() / best - 1.0).abs() < 1e-9);
+    let rivals = report["rivals"].as_array().unwrap();
+    assert_eq!(rivals.len(), 3, "its own search is the first");
+    for rival in rivals {
+        let loss = rival["loss_w"].as_f64().unwrap();
+        assert!((loss / best - 1.0).abs() < 1e-3 && rival["violation"].as_f64().unwrap() < 1e-4, "{rival}");
+    }
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("Searches from 4 starts") && page.contains("The same search by other methods"));
+    let short = study(&folder, &[QUICK, ("[oil]", "[optimiser]\nmax_simulations = 3\n[oil]")]);
+    stribeck().arg("run").arg(short).arg("--out").arg(&out).assert().code(10);
+}

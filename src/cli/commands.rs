@@ -83,7 +83,7 @@ pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
     let name = a.file.file_stem().unwrap_or_default();
     let folder = a.out.clone().unwrap_or_else(|| Path::new("out").join(name));
     std::fs::create_dir_all(&folder).map_err(|e| Stop::File(folder.clone(), e))?;
-    let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(study.optimiser.max_iterations));
+    let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(study.optimiser.options.settings.max_iterations));
     let context = RunContext { cancel: &cancel, progress: &bars };
     if let Some(found) = crate::study::characterise(&study, context) {
         bars.finish();

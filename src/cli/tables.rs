@@ -74,7 +74,59 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
     if let Some(verdict) = &report.kkt.verdict {
         text += &format!("second order: {verdict}\n");
     }
+    if let Some(starts) = &report.starts {
+        let converged = starts.runs.iter().filter(|r| r.optimum.is_some()).count();
+        let median = starts
+            .median_simulations
+            .map_or_else(String::new, |m| format!(", {m} simulations in the median"));
+        text += &format!("{} starts, {converged} converged{median}\n", starts.runs.len());
+        for (k, o) in starts.optima.iter().enumerate() {
+            text += &format!("optimum {}: {} W, found by {}\n", k + 1, short(o.loss_w), o.found);
+        }
+    }
+    if !report.rivals.is_empty() {
+        text += &format!("\n{}\n", rivals(report));
+    }
     text
+}
+
+fn rivals(report: &Report) -> Table {
+    let mut rivals = table(&[
+        "method",
+        "gradient",
+        "outcome",
+        "loss [W]",
+        "violation",
+        "KKT",
+        "simulations",
+        "gradients",
+        "as simulations",
+        "time [s]",
+    ]);
+    let word = |v: serde_json::Result<serde_json::Value>| match v {
+        Ok(serde_json::Value::String(name)) => name.replace('-', " "),
+        _ => String::new(),
+    };
+    for r in &report.rivals {
+        let small = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.1e}"));
+        rivals.add_row([
+            r.method.words().to_owned(),
+            if r.method == crate::optimise::Method::Cobyla {
+                "none".to_owned()
+            } else {
+                r.engine.as_str().to_owned()
+            },
+            word(serde_json::to_value(r.status)),
+            maybe(r.loss_w),
+            small(r.violation),
+            small(r.kkt),
+            short(r.simulations),
+            r.gradient_calls.to_string(),
+            short(r.gradient_simulations),
+            short(r.seconds),
+        ]);
+    }
+    rivals
 }
 
 fn limits(report: &Report) -> Table {

@@ -85,12 +85,14 @@ pub struct DesignProblem<'r, M: SensitiveDae> {
     run: RunContext<'r>,
     memory: Mutex<Memory>,
     /// Called with a snapshot at accepted designs.
-    save: Option<Box<dyn Fn(&[u8]) + Send + Sync + 'r>>,
+    save: Option<Save<'r>>,
     /// Work done when the last snapshot was taken.
     saved: Mutex<(Cost, Cost)>,
 }
 
 type Key = Vec<u64>;
+/// Takes a snapshot.
+type Save<'r> = Box<dyn Fn(&[u8]) + Send + Sync + 'r>;
 
 #[derive(Default, Clone, Serialize, Deserialize)]
 struct Memory {

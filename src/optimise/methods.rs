@@ -24,6 +24,17 @@ pub enum Method {
     Cobyla,
 }
 
+impl Method {
+    /// Its name in sentences.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Sqp => "SQP",
+            Self::AugmentedLagrangian => "augmented Lagrangian with L-BFGS",
+            Self::Cobyla => "COBYLA",
+        }
+    }
+}
+
 /// What a search may cost; none for no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Budget {

@@ -1,5 +1,6 @@
 //! Content of `report.json`. Every number that has a unit names it in its key or stands beside it.
 
+use super::{RivalRun, StartsReport};
 use crate::gradient::{EngineName, TaylorRow};
 use crate::optimise::{Curvature, Outcome};
 use crate::orbit::Recording;
@@ -39,6 +40,10 @@ pub struct Report {
     pub orbit: Vec<OrbitReport>,
     /// Accepted designs.
     pub history: Vec<IterationEvent>,
+    /// All searches, if several were made from different starts.
+    pub starts: Option<StartsReport>,
+    /// The same search by other methods and gradient engines, if the study asks for them; its own is the first.
+    pub rivals: Vec<RivalRun>,
     /// Work done.
     pub cost: CostReport,
     /// What is assumed and why.
@@ -87,6 +92,12 @@ pub struct DesignValue {
     pub upper: f64,
     /// Bound it stands at.
     pub at_bound: AtBound,
+    /// Change from the start, as a share of the box.
+    pub moved: f64,
+    /// What one per cent of the box more would do to the loss, W; limits aside.
+    pub effect_w_per_percent: Option<f64>,
+    /// What one unit more of room at the bound it stands at would save, limits kept, W per unit.
+    pub bound_price_w_per_unit: Option<f64>,
 }
 
 /// Loss at one design.

@@ -10,6 +10,7 @@ mod data;
 mod figures;
 mod html;
 mod maps;
+mod searches;
 mod svg;
 mod vtk;
 
@@ -25,6 +26,7 @@ pub use comparison::{
 pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
 pub use html::html;
+pub use searches::{LocalOptimum, RivalRun, StartRun, StartsReport};
 pub use vtk::film_vtk;
 
 use std::path::Path;

@@ -8,12 +8,12 @@ use super::faults::{Fault, Faults, StudyErrors, line_of, without_nulls};
 use super::file::{FilmModelName, StudyFile};
 use super::oil::OilUse;
 use super::plans::{BearingPlan, ConstraintPlan, FilmPlan, OilPlan, OperatingPoint, ParameterPlan};
+use super::searches::SearchPlan;
 use super::{
     FORMAT, bearings, characteristic, comparison, constraints, film, heat, loads, oil, parameters, sections,
 };
 use crate::cranktrain::{BearingParameter, Cylinder, VeeEngine};
 use crate::gradient::EngineName;
-use crate::optimise::SqpOptions;
 use crate::orbit::OrbitOptions;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
@@ -52,7 +52,7 @@ pub struct Study {
     /// Relative perturbation of the finite differences.
     pub perturbation: f64,
     /// Optimiser.
-    pub optimiser: SqpOptions,
+    pub optimiser: SearchPlan,
     /// Sharpness of smooth extrema.
     pub sharpness: f64,
     pub(super) characteristic: Option<CharacteristicPlan>,
@@ -190,7 +190,7 @@ struct Search {
     constraints: Vec<ConstraintPlan>,
     engine: EngineName,
     perturbation: f64,
-    optimiser: SqpOptions,
+    optimiser: SearchPlan,
     sharpness: f64,
     comparison: Option<ComparisonPlan>,
 }
@@ -204,7 +204,7 @@ impl Search {
             constraints: Vec::new(),
             engine: EngineName::Adj,
             perturbation: sections::PERTURBATION,
-            optimiser: SqpOptions::default(),
+            optimiser: SearchPlan::default(),
             sharpness: sections::SHARPNESS,
             comparison: None,
         }

@@ -5,9 +5,9 @@
 use super::Given;
 use super::faults::{Faults, join, refuse_others};
 use super::file::{ComparisonFile, GradientFile, OptimiserFile, StudyFile};
+use super::searches::SearchPlan;
 use super::sections::{self, SHARPNESS};
 use crate::gradient::EngineName;
-use crate::optimise::SqpOptions;
 
 const PATH: &str = "comparison";
 /// Why sections of the search mean nothing here.
@@ -118,13 +118,20 @@ pub(super) fn perturbation(file: &mut StudyFile, faults: &mut Faults) -> Option<
 }
 
 /// What a comparison reads of `[optimiser]`: the sharpness of smooth extrema.
-pub(super) fn sharpness(file: &mut StudyFile, faults: &mut Faults) -> Option<(SqpOptions, f64)> {
+pub(super) fn sharpness(file: &mut StudyFile, faults: &mut Faults) -> Option<(SearchPlan, f64)> {
     let o = faults.section(&mut file.optimiser, "optimiser")?;
     faults.unknown::<OptimiserFile>(&o.unknown, "optimiser");
     let used = ["aggregate_sharpness"];
-    refuse_others!(faults, o, "optimiser", WHY, used, [method, tolerance, max_iterations, step_limit]);
+    refuse_others!(
+        faults,
+        o,
+        "optimiser",
+        WHY,
+        used,
+        [method, tolerance, max_iterations, step_limit, starts, seed, max_simulations, max_time, rivals]
+    );
     let path = "optimiser.aggregate_sharpness";
     let sharpness = faults.or(&mut o.aggregate_sharpness, path, SHARPNESS);
     faults.range(Some(sharpness), path, |v| (10.0..=2000.0).contains(&v), "between 10 and 2000");
-    Some((SqpOptions::default(), sharpness))
+    Some((SearchPlan::default(), sharpness))
 }

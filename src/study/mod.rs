@@ -37,6 +37,7 @@ mod rheology;
 mod roughness;
 mod run;
 mod schema;
+mod searches;
 mod sections;
 mod sensitivity;
 mod shapes;
@@ -63,6 +64,7 @@ pub use plans::{
 pub use prove::prove;
 pub use run::{run, run_saved};
 pub use schema::schema;
+pub use searches::SearchPlan;
 
 pub use variables::Variable;
 pub use vocabulary::QuantityName;

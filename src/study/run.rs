@@ -4,10 +4,11 @@ use super::build::{Plan, plan};
 use super::check::Study;
 use super::faults::pointer;
 use super::methods::methods;
+use super::searches::{rivals, searches};
 use super::vocabulary::QuantityName;
 use super::{observe, sensitivity};
 use crate::gradient::{GradientTable, taylor_table};
-use crate::optimise::{Evaluated, EvaluationError, Minimum, Outcome, Sense, curvature, minimise};
+use crate::optimise::{ConstrainedProblem, Evaluated, EvaluationError, Minimum, Outcome, Sense, curvature};
 use crate::report::{
     Assumption, AtBound, CaseLoss, ConstraintReport, CostReport, Curves, DesignValue, Findings,
     GradientReport, GradientRow, KktReport, ObjectiveReport, OutcomeReport, Provenance, REPORT_FORMAT,
@@ -39,38 +40,22 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
     let began = Instant::now();
     let stage = |name: &str| context.progress.tell(&Event::Stage { name: name.to_owned() });
     stage("optimising");
-    let planned = plan(study, study.engine, context).map(|mut plan| {
-        let known = resume(study, &mut plan, "search", store);
-        if known > 0 {
-            stage(&format!("going on where the last run stopped, with {known} simulations known"));
-        }
-        plan
-    });
-    let search = match planned {
-        Ok(plan) => match minimise(&plan.problem, &plan.start, study.optimiser) {
-            Ok(minimum) => Ok((plan, minimum)),
-            Err(e) => Err(e.to_string()),
-        },
-        Err(e) => Err(e.to_string()),
-    };
-    let (plan, minimum) = match search {
+    let searched = match searches(study, context, store) {
         Ok(found) => found,
         Err(reason) => return failed(study, reason, began),
     };
+    let (plan, minimum) = (&searched.plan, &searched.minimum);
     stage("checking the design");
-    let known = minimum.values.as_ref().and_then(|_| revisit(study, &plan, &minimum, context));
-    report(study, &plan, &minimum, known, context, began)
-}
-
-/// Lets a plan save what it knows, and gives it what was saved of the same study by the same program; returns the number of
-/// simulations that were known.
-pub(super) fn resume<'r>(study: &Study, plan: &mut Plan<'r>, name: &'r str, store: &'r dyn Store) -> u64 {
-    let head = format!("{} {} {name}\n", env!("CARGO_PKG_VERSION"), study.hash);
-    let found = store.load(name);
-    let rest = found.as_deref().and_then(|all| all.strip_prefix(head.as_bytes()));
-    let known = rest.is_some_and(|rest| plan.problem.restore(rest));
-    plan.problem.saved_by(move |snapshot| store.save(name, &[head.as_bytes(), snapshot].concat()));
-    if known { plan.problem.costs().0.simulations } else { 0 }
+    let known = minimum.values.as_ref().and_then(|_| revisit(study, plan, minimum, context));
+    let mut findings = report(study, plan, minimum, known, context);
+    findings.report.rivals = rivals(study, context, store);
+    findings.report.starts = searched.starts;
+    let cost = &mut findings.report.cost;
+    let (simulations, gradients) = searched.others;
+    cost.total += simulations + gradients;
+    cost.gradients += gradients;
+    cost.seconds = began.elapsed().as_secs_f64();
+    findings
 }
 
 /// Cycles at start and optimum.
@@ -94,7 +79,6 @@ fn report(
     minimum: &Minimum,
     known: Option<Known>,
     context: RunContext<'_>,
-    began: Instant,
 ) -> Findings {
     let mut findings = blank(study, minimum.outcome, minimum.failures.clone());
     let report = &mut findings.report;
@@ -124,17 +108,13 @@ fn report(
                 report.kkt.verdict = report.kkt.curvature.as_ref().map(|c| c.verdict().to_owned());
             }
             report.gradient = gradient(study, plan, &minimum.x, &known.optimum, &mut all, context).ok();
+            price_parameters(study, plan, minimum, &mut report.design);
         }
         findings.curves = all;
     }
     let (simulations, gradients) = plan.problem.costs();
     let total = simulations + gradients;
-    findings.report.cost = CostReport {
-        total,
-        gradients,
-        gradient_calls: minimum.gradients,
-        seconds: began.elapsed().as_secs_f64(),
-    };
+    findings.report.cost = CostReport { total, gradients, gradient_calls: minimum.gradients, seconds: 0.0 };
     findings
 }
 
@@ -167,7 +147,7 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
         constraints: unknown_constraints(study),
         kkt: KktReport {
             residual: None,
-            tolerance: study.optimiser.tolerance,
+            tolerance: study.optimiser.options.settings.tolerance,
             curvature: None,
             verdict: None,
         },
@@ -175,6 +155,8 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
         gradient: None,
         orbit: Vec::new(),
         history: Vec::new(),
+        starts: None,
+        rivals: Vec::new(),
         cost: CostReport {
             total: Default::default(),
             gradients: Default::default(),
@@ -216,9 +198,28 @@ fn design(study: &Study, x: &[f64]) -> Vec<DesignValue> {
             lower: shown(p.lower),
             upper: shown(p.upper),
             at_bound,
+            moved: (x - p.start) / (p.upper - p.lower),
+            effect_w_per_percent: None,
+            bound_price_w_per_unit: None,
         }
     };
     study.parameters.iter().zip(x).map(value).collect()
+}
+
+/// What a little more of each parameter, or of room for it, does to the loss.
+fn price_parameters(study: &Study, plan: &Plan, minimum: &Minimum, design: &mut [DesignValue]) {
+    let Ok(slopes) = plan.problem.slopes(&minimum.x) else { return };
+    let optimal = matches!(minimum.outcome, Outcome::Converged | Outcome::AlmostConverged);
+    for (j, (d, p)) in design.iter_mut().zip(&study.parameters).enumerate() {
+        let width = p.upper - p.lower;
+        d.effect_w_per_percent = Some(0.01 * width * slopes.objective[j]);
+        let price = match d.at_bound {
+            AtBound::No => None,
+            AtBound::Lower => minimum.multipliers.lower.get(j),
+            AtBound::Upper => minimum.multipliers.upper.get(j),
+        };
+        d.bound_price_w_per_unit = price.filter(|_| optimal).map(|m| m / width * p.variable.scale.0);
+    }
 }
 
 fn objective(study: &Study, plan: &Plan, known: &Known) -> ObjectiveReport {
@@ -317,7 +318,7 @@ fn constraints(
             limit: tidy(c.quantity.shown(c.limit)),
             unit: unit.to_owned(),
             active,
-            met: excess <= study.optimiser.tolerance.max(FEASIBLE),
+            met: excess <= study.optimiser.options.settings.tolerance.max(FEASIBLE),
             price_w_per_unit: optimal.then_some(if active { multiplier / c.limit * scale } else { 0.0 }),
         }
     };

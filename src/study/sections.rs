@@ -3,12 +3,12 @@
 use super::Given;
 use super::faults::{Faults, join, pointer, without_nulls};
 use super::file::{
-    GradientFile, MethodName, ObjectiveFile, OperatingPointFile, OptimiserFile, OrbitFile, SchemeName,
-    StudyFile,
+    GradientFile, ObjectiveFile, OperatingPointFile, OptimiserFile, OrbitFile, SchemeName, StudyFile,
 };
 use super::plans::OperatingPoint;
+use super::searches::SearchPlan;
 use crate::gradient::EngineName;
-use crate::optimise::SqpOptions;
+use crate::optimise::{Budget, Method, SearchOptions, SqpOptions};
 use crate::orbit::{OrbitOptions, Scheme};
 
 /// Default sharpness of smooth extrema.
@@ -116,11 +116,24 @@ pub(super) fn gradient(file: &mut StudyFile, faults: &mut Faults) -> Option<(Eng
     Some((engine, perturbation))
 }
 
-pub(super) fn optimiser(file: &mut StudyFile, faults: &mut Faults) -> Option<(SqpOptions, f64)> {
+pub(super) fn optimiser(file: &mut StudyFile, faults: &mut Faults) -> Option<(SearchPlan, f64)> {
     let o = faults.section(&mut file.optimiser, "optimiser")?;
     faults.unknown::<OptimiserFile>(&o.unknown, "optimiser");
     let at = |key: &str| join("optimiser", key);
-    faults.or(&mut o.method, &at("method"), MethodName::Sqp);
+    let method = faults.or(&mut o.method, &at("method"), Method::Sqp);
+    let starts = faults.or(&mut o.starts, &at("starts"), 1);
+    let seed = faults.or(&mut o.seed, &at("seed"), 1);
+    let rivals = faults.or(&mut o.rivals, &at("rivals"), Vec::new());
+    let simulations = faults.get(&o.max_simulations, &at("max_simulations"));
+    let seconds = faults.get(&o.max_time, &at("max_time")).map(|t| t.si());
+    faults.range(
+        Some(starts as f64),
+        &at("starts"),
+        |v| (1.0..=10_000.0).contains(&v),
+        "between 1 and 10000",
+    );
+    faults.range(simulations.map(|v| v as f64), &at("max_simulations"), |v| v >= 1.0, "at least 1");
+    faults.range(seconds, &at("max_time"), |v| v > 0.0, "above zero");
     let defaults = SqpOptions::default();
     let options = SqpOptions {
         tolerance: faults.or(&mut o.tolerance, &at("tolerance"), defaults.tolerance),
@@ -147,7 +160,9 @@ pub(super) fn optimiser(file: &mut StudyFile, faults: &mut Faults) -> Option<(Sq
         |v| (10.0..=2000.0).contains(&v),
         "between 10 and 2000",
     );
-    Some((options, sharpness))
+    let rivals = rivals.iter().map(|r| (r.method, r.engine.unwrap_or(EngineName::Adj))).collect();
+    let options = SearchOptions { method, settings: options, budget: Budget { simulations, seconds } };
+    Some((SearchPlan { options, starts, seed, rivals }, sharpness))
 }
 
 /// Assumptions must belong to keys that exist.

@@ -46,7 +46,7 @@ pub use oil::{
     ViscosityPointFile,
 };
 pub use search::{
-    ConstraintFile, GradientFile, MethodName, ObjectiveFile, OperatingPointFile, OptimiserFile, ParameterFile,
+    ConstraintFile, GradientFile, ObjectiveFile, OperatingPointFile, OptimiserFile, ParameterFile,
 };
 pub use surface::{ContactIntegralName, ContactName, RoughnessFile, ShapeFile, ShapeKind, SurfaceName};
 

@@ -2,8 +2,11 @@
 
 use super::QuantityText;
 use crate::gradient::EngineName;
+use crate::optimise::Method;
 use crate::study::{Given, QuantityName};
-use crate::units::Rotation;
+use crate::units::{Rotation, Time};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 section! {
     /// One operating point of the duty cycle.
@@ -65,19 +68,32 @@ section! {
     }
 }
 
-words! {
-    /// Search method.
-    MethodName {
-        /// Sequential quadratic programming.
-        Sqp,
-    }
+/// Another search for comparison.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RivalFile {
+    /// Method.
+    pub method: Method,
+    /// Gradient engine. Default "ADJ".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub engine: Option<EngineName>,
 }
 
 section! {
     /// Optimiser.
     OptimiserFile {
-        /// "sqp" (default).
-        method: MethodName,
+        /// "sqp" (default), "augmented-lagrangian" or, without gradients, "cobyla".
+        method: Method,
+        /// Searches: the first from the start, the others from a Latin hypercube over the box. Default 1.
+        starts: u64,
+        /// Seed of the Latin hypercube. Default 1.
+        seed: u64,
+        /// Designs one search may simulate. No limit by default.
+        max_simulations: u64,
+        /// Wall time one search may take, like "600 s"; a search that ends by it gives other numbers on a rerun. No limit by default.
+        max_time: Time,
+        /// Methods and gradient engines that search from the same start too, for comparison in the report. None by default.
+        rivals: Vec<RivalFile>,
         /// Scaled KKT residual at which a design counts as optimal. Default 1e-6.
         tolerance: f64,
         /// Iterations at most. Default 60.

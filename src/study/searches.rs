@@ -1,0 +1,220 @@
+//! The searches of a run: one from the study's start, or several from starts spread over the box; rivals beside them.
+//!
+//! Every search has a problem of its own, so that none starts its cycles from another's and the results do not depend on how many
+//! run at once.
+
+use super::build::{Plan, plan};
+use super::check::Study;
+use crate::gradient::EngineName;
+use crate::optimise::{Method, Minimum, Outcome, SearchOptions, latin_hypercube, search};
+use crate::report::{LocalOptimum, RivalRun, StartRun, StartsReport};
+use crate::run::{Cost, Event, RunContext, Silent, Store};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Relative difference of two losses, and of two designs in their box, up to which two ends are the same optimum.
+const SAME_LOSS: f64 = 1e-4;
+const SAME_DESIGN: f64 = 1e-2;
+/// Violation up to which an end counts among the feasible ones.
+const FEASIBLE: f64 = 1e-5;
+
+/// How a study searches.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SearchPlan {
+    /// Method, settings, budget.
+    pub options: SearchOptions,
+    /// Searches: the first from the study's start, the others from a Latin hypercube.
+    pub starts: u64,
+    /// Seed of the hypercube.
+    pub seed: u64,
+    /// Other methods and engines that are to search from the same start, for comparison.
+    pub rivals: Vec<(Method, EngineName)>,
+}
+
+/// What the searches of a run found.
+pub(super) struct Searched<'r> {
+    pub plan: Plan<'r>,
+    pub minimum: Minimum,
+    /// All searches, if there were several.
+    pub starts: Option<StartsReport>,
+    /// Work of the searches that did not win: simulations, and gradients beyond them.
+    pub others: (Cost, Cost),
+}
+
+/// Lets a plan save what it knows, and gives it what was saved of the same study by the same program; returns the number of
+/// simulations that were known.
+fn resume<'r>(study: &Study, plan: &mut Plan<'r>, name: String, store: &'r dyn Store) -> u64 {
+    let head = format!("{} {} {name}\n", env!("CARGO_PKG_VERSION"), study.hash);
+    let found = store.load(&name);
+    let rest = found.as_deref().and_then(|all| all.strip_prefix(head.as_bytes()));
+    let known = rest.is_some_and(|rest| plan.problem.restore(rest));
+    plan.problem.saved_by(move |snapshot| store.save(&name, &[head.as_bytes(), snapshot].concat()));
+    if known { plan.problem.costs().0.simulations } else { 0 }
+}
+
+/// Searches; the reason if the study's model does not exist or argmin failed.
+pub(super) fn searches<'r>(
+    study: &Study,
+    context: RunContext<'r>,
+    store: &'r dyn Store,
+) -> Result<Searched<'r>, String> {
+    let options = &study.optimiser.options;
+    if study.optimiser.starts <= 1 {
+        let mut plan = plan(study, study.engine, context).map_err(|e| e.to_string())?;
+        let known = resume(study, &mut plan, "search".to_owned(), store);
+        if known > 0 {
+            let name = format!("going on where the last run stopped, with {known} simulations known");
+            context.progress.tell(&Event::Stage { name });
+        }
+        let minimum = search(&plan.problem, &plan.start, options).map_err(|e| e.to_string())?;
+        return Ok(Searched { plan, minimum, starts: None, others: Default::default() });
+    }
+    let starts = starts(study);
+    let ends: Vec<Result<(Plan, Minimum), String>> = starts
+        .par_iter()
+        .enumerate()
+        .map(|(k, start)| {
+            let quiet = RunContext { progress: &Silent, ..context };
+            let mut plan = plan(study, study.engine, quiet).map_err(|e| e.to_string())?;
+            resume(study, &mut plan, format!("start-{k}"), store);
+            let minimum = search(&plan.problem, start, options).map_err(|e| e.to_string())?;
+            let loss = minimum.values.as_ref().map_or(f64::NAN, |v| v.objective);
+            let name = format!("start {} of {}: {}", k + 1, starts.len(), crate::report::short(loss));
+            context.progress.tell(&Event::Stage { name: format!("{name} W") });
+            Ok((plan, minimum))
+        })
+        .collect();
+    let mut ends: Vec<(Plan, Minimum)> = ends.into_iter().collect::<Result<_, _>>()?;
+    let report = report(study, &starts, &ends);
+    let best = (0..ends.len()).min_by(|a, b| rank(&ends[*a].1).total_cmp(&rank(&ends[*b].1))).unwrap_or(0);
+    let (mut plan, minimum) = ends.swap_remove(best);
+    let others = ends
+        .iter()
+        .map(|(p, _)| p.problem.costs())
+        .fold((Cost::default(), Cost::default()), |a, c| (a.0 + c.0, a.1 + c.1));
+    // The saving is against the study's start, whichever start led to the best design.
+    plan.start = study.parameters.iter().map(|p| p.start).collect();
+    Ok(Searched { plan, minimum, starts: Some(report), others })
+}
+
+/// Designs simulated for a plan.
+fn simulations(plan: &Plan) -> u64 {
+    plan.problem.costs().0.simulations / plan.cases.len() as u64
+}
+
+/// Feasible ends by their loss, others behind them by their violation.
+fn rank(end: &Minimum) -> f64 {
+    match &end.values {
+        Some(v) if v.violation() <= FEASIBLE => v.objective,
+        Some(v) => 1e100 * (1.0 + v.violation()),
+        None => f64::INFINITY,
+    }
+}
+
+fn starts(study: &Study) -> Vec<Vec<f64>> {
+    let p = &study.parameters;
+    let spread = latin_hypercube(study.optimiser.starts as usize - 1, p.len(), study.optimiser.seed);
+    let inside = |u: Vec<f64>| u.iter().zip(p).map(|(u, p)| p.lower + u * (p.upper - p.lower)).collect();
+    std::iter::once(p.iter().map(|p| p.start).collect()).chain(spread.into_iter().map(inside)).collect()
+}
+
+fn report(study: &Study, starts: &[Vec<f64>], ends: &[(Plan, Minimum)]) -> StartsReport {
+    let shown = |x: &[f64]| -> Vec<f64> {
+        x.iter().zip(&study.parameters).map(|(x, p)| p.variable.shown(*x)).collect()
+    };
+    let apart = |a: &[f64], b: &[f64]| {
+        a.iter()
+            .zip(b)
+            .zip(&study.parameters)
+            .fold(0.0f64, |m, ((a, b), p)| m.max((a - b).abs() / (p.upper - p.lower)))
+    };
+    let mut optima: Vec<(&Minimum, usize)> = Vec::new();
+    let mut order: Vec<usize> = (0..ends.len()).collect();
+    order.sort_by(|a, b| rank(&ends[*a].1).total_cmp(&rank(&ends[*b].1)));
+    let mut belongs = vec![None; ends.len()];
+    for k in order {
+        let end = &ends[k].1;
+        let converged = matches!(end.outcome, Outcome::Converged | Outcome::AlmostConverged);
+        let Some(loss) = end.values.as_ref().map(|v| v.objective).filter(|_| converged) else { continue };
+        let same = optima.iter().position(|(o, _)| {
+            let theirs = o.values.as_ref().map_or(f64::NAN, |v| v.objective);
+            (loss - theirs).abs() <= SAME_LOSS * theirs.abs() && apart(&end.x, &o.x) <= SAME_DESIGN
+        });
+        let at = same.unwrap_or_else(|| {
+            optima.push((end, 0));
+            optima.len() - 1
+        });
+        optima[at].1 += 1;
+        belongs[k] = Some(at + 1);
+    }
+    let mut simulated: Vec<u64> =
+        (0..ends.len()).filter(|k| belongs[*k].is_some()).map(|k| simulations(&ends[k].0)).collect();
+    simulated.sort_unstable();
+    let runs = ends.iter().zip(starts).zip(&belongs).map(|(((plan, end), start), optimum)| StartRun {
+        start: shown(start),
+        status: end.outcome,
+        loss_w: end.values.as_ref().map(|v| v.objective),
+        violation: end.values.as_ref().map(|v| v.violation()),
+        kkt: end.kkt.is_finite().then_some(end.kkt),
+        simulations: simulations(plan),
+        gradient_calls: end.gradients,
+        optimum: *optimum,
+    });
+    let optimum = |(end, found): &(&Minimum, usize)| LocalOptimum {
+        loss_w: end.values.as_ref().map_or(f64::NAN, |v| v.objective),
+        design: shown(&end.x),
+        found: *found as u64,
+    };
+    StartsReport {
+        seed: study.optimiser.seed,
+        parameters: study.parameters.iter().map(|p| p.name.clone()).collect(),
+        units: study.parameters.iter().map(|p| p.variable.unit.to_owned()).collect(),
+        runs: runs.collect(),
+        median_simulations: simulated.get(simulated.len() / 2).copied(),
+        optima: optima.iter().map(optimum).collect(),
+    }
+}
+
+/// Rivals of the study's own search, from the same start, one after the other.
+pub(super) fn rivals<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Store) -> Vec<RivalRun> {
+    let own = (study.optimiser.options.method, study.engine);
+    if study.optimiser.rivals.is_empty() {
+        return Vec::new();
+    }
+    let all = std::iter::once(own).chain(study.optimiser.rivals.iter().copied());
+    all.enumerate().filter_map(|(k, rival)| rival_run(study, k, rival, context, store)).collect()
+}
+
+fn rival_run<'r>(
+    study: &Study,
+    k: usize,
+    (method, engine): (Method, EngineName),
+    context: RunContext<'r>,
+    store: &'r dyn Store,
+) -> Option<RivalRun> {
+    let name = format!("rival {}: {} with {}", k + 1, method.words(), engine.as_str());
+    context.progress.tell(&Event::Stage { name });
+    if context.cancel.is_cancelled() {
+        return None;
+    }
+    let began = Instant::now();
+    let mut plan = plan(study, engine, context).ok()?;
+    resume(study, &mut plan, format!("rival-{k}"), store);
+    let options = SearchOptions { method, ..study.optimiser.options };
+    let end = search(&plan.problem, &plan.start, &options).ok()?;
+    let (simulations, gradients) = plan.problem.costs();
+    let per_cycle = simulations.factorisations as f64 / simulations.simulations.max(1) as f64;
+    let cases = plan.cases.len() as f64;
+    Some(RivalRun {
+        method,
+        engine,
+        status: end.outcome,
+        loss_w: end.values.as_ref().map(|v| v.objective),
+        violation: end.values.as_ref().map(|v| v.violation()),
+        kkt: end.kkt.is_finite().then_some(end.kkt),
+        simulations: simulations.simulations as f64 / cases,
+        gradient_calls: end.gradients,
+        gradient_simulations: gradients.factorisations as f64 / per_cycle / cases,
+        seconds: began.elapsed().as_secs_f64(),
+    })
+}
