@@ -16,6 +16,7 @@ mod literature;
 mod main_job;
 mod orbits;
 mod own_model;
+mod own_problem;
 mod recording;
 mod resume;
 mod sensitivity;

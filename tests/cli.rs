@@ -244,3 +244,35 @@ fn several_starts_and_rivals_are_reported_and_a_budget_is_kept() {
     let short = study(&folder, &[QUICK, ("[oil]", "[optimiser]\nmax_simulations = 3\n[oil]")]);
     stribeck().arg("run").arg(short).arg("--out").arg(&out).assert().code(10);
 }
+
+#[test]
+fn a_front_is_reported_as_table_page_and_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("answer");
+    let front =
+        "[pareto]\nquantity = \"min-film-thickness\"\nat_least = [\"3 um\", \"2 um\", \"90 um\"]\n[oil]";
+    let file = study(&folder, &[QUICK, ("[oil]", front)]);
+    let run = stribeck().arg("run").arg(&file).arg("--json").arg("--out").arg(&out).assert().success();
+    let report: serde_json::Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
+    let points = report["pareto"]["points"].as_array().unwrap();
+    let number = |k: usize, key: &str| points[k][key].as_f64();
+    assert_eq!([0, 1, 2].map(|k| number(k, "limit").unwrap()), [2.0, 3.0, 90.0]);
+    assert!(number(0, "loss_w").unwrap() < number(1, "loss_w").unwrap());
+    assert!(number(2, "loss_w").is_none() && points[2]["status"] == "infeasible");
+    // The study's own limit is one of the points, and its price the slope of the front there.
+    let best = report["objective"]["optimum"]["total_w"].as_f64().unwrap();
+    assert!((number(1, "loss_w").unwrap() / best - 1.0).abs() < 1e-6);
+    assert!(number(1, "price_w_per_unit").unwrap() > 0.0);
+    let csv = std::fs::read_to_string(out.join("pareto.csv")).unwrap();
+    assert!(
+        csv.starts_with("min_film_thickness_um,loss_w,price_w_per_um,status,") && csv.lines().count() == 4
+    );
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("Loss over min film thickness"));
+    let wrong =
+        "[pareto]\nquantity = \"min-film-thickness\"\nat_least = [\"3 um\", \"3 um\", \"3 bar\"]\n[oil]";
+    let wrong = study(&folder, &[QUICK, ("[oil]", wrong)]);
+    let refused = stribeck().arg("check").arg(wrong).assert().code(2);
+    let text = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+    assert!(text.contains("pareto.at_least[1]") && text.contains("pareto.at_least[2]"), "{text}");
+}

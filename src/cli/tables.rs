@@ -71,6 +71,12 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
         report.cost.gradient_calls,
         short(report.cost.seconds)
     );
+    if report.kkt.combined > 1 {
+        text += &format!(
+            "the optimum lies on a kink: the residual combines {} gradients met there\n",
+            report.kkt.combined
+        );
+    }
     if let Some(verdict) = &report.kkt.verdict {
         text += &format!("second order: {verdict}\n");
     }
@@ -84,10 +90,28 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
             text += &format!("optimum {}: {} W, found by {}\n", k + 1, short(o.loss_w), o.found);
         }
     }
+    if let Some(front) = &report.pareto {
+        let limit = format!("{} {} [{}]", front.quantity, front.sense, front.unit);
+        let mut rows = table(&[&limit, "loss [W]", "price [W/unit]", "outcome", "simulations"]);
+        for p in &front.points {
+            let status = word(serde_json::to_value(p.status));
+            let (loss, price) = (maybe(p.loss_w), maybe(p.price_w_per_unit));
+            rows.add_row([short(p.limit), loss, price, status, p.simulations.to_string()]);
+        }
+        text += &format!("\n{rows}\n");
+    }
     if !report.rivals.is_empty() {
         text += &format!("\n{}\n", rivals(report));
     }
     text
+}
+
+/// A word of the report's format as one reads it.
+fn word(value: serde_json::Result<serde_json::Value>) -> String {
+    match value {
+        Ok(serde_json::Value::String(name)) => name.replace('-', " "),
+        _ => String::new(),
+    }
 }
 
 fn rivals(report: &Report) -> Table {
@@ -103,10 +127,6 @@ fn rivals(report: &Report) -> Table {
         "as simulations",
         "time [s]",
     ]);
-    let word = |v: serde_json::Result<serde_json::Value>| match v {
-        Ok(serde_json::Value::String(name)) => name.replace('-', " "),
-        _ => String::new(),
-    };
     for r in &report.rivals {
         let small = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.1e}"));
         rivals.add_row([

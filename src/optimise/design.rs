@@ -202,6 +202,11 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
         Ok(tables)
     }
 
+    /// Lets the first design start from cycles of a neighbour of the problem: one with the same cases and other limits.
+    pub fn begin_beside(&self, cycles: Arc<Evaluated>) {
+        self.lock().base = Some(cycles);
+    }
+
     /// All that is known, for another process; a format of this version of the program.
     pub fn snapshot(&self) -> Vec<u8> {
         let memory = self.lock().clone();

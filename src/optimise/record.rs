@@ -141,6 +141,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Record<'p, P> {
                 upper: restore(&m.upper),
             },
             kkt,
+            combined: 1,
             history: self.history,
             failures: self.failures,
             evaluations: self.evaluations,

@@ -9,6 +9,7 @@
 //! The KKT residual is the largest of `|grad L|`, `|lambda c|` and the violation, in scaled variables and with the
 //! objective divided by its start value.
 
+use super::bundle;
 use super::problem::Scaled;
 use super::qp::{Qp, QpSolution};
 use super::state::Iterate;
@@ -31,6 +32,11 @@ const STALLED: u32 = 3;
 pub(super) const FEASIBLE: f64 = 1e-7;
 /// KKT residual and violation at which a search that cannot go on counts as almost converged.
 pub(super) const CLOSE: f64 = 1e-5;
+/// A KKT residual that does not fall below this share of the one before has come to a halt, perhaps at a kink.
+const STAGNANT: f64 = 0.7;
+/// A change of the gradient over a step this short that is this many times as large is the jump at a kink, no curvature.
+const SHORT: f64 = 1e-5;
+const STEEP: f64 = 1e5;
 /// Powell's damping.
 const DAMPING: f64 = 0.2;
 
@@ -64,6 +70,8 @@ pub struct Minimum {
     pub multipliers: Multipliers,
     /// KKT residual there; infinite if its sub-problem was not solved.
     pub kkt: f64,
+    /// Gradients, met within the tolerance of the point, whose combination that residual is of; 1 where the problem is smooth.
+    pub combined: usize,
     /// Accepted points.
     pub history: Vec<IterationEvent>,
     /// Reasons of refused evaluations.
@@ -133,6 +141,7 @@ pub fn minimise<P: ConstrainedProblem + ?Sized>(
             upper: restore(multipliers.upper),
         },
         kkt,
+        combined: state.combined,
         history: state.history,
         failures: state.failures,
         evaluations: count("evaluations"),
@@ -194,6 +203,11 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
             return Ok((self.give_up(state), None));
         };
         state.kkt = kkt_residual(&now.values, &now.slopes, &qp);
+        state.combined = 1;
+        let stagnant = state.kkt > STAGNANT * state.last_kkt;
+        state.last_kkt = state.kkt;
+        let beyond = if stagnant { self.at_kink(problem, &mut state, &now) } else { None };
+        let qp = beyond.unwrap_or(qp);
         state.multipliers = qp.multipliers.clone();
         report(problem, &mut state, &now);
         let converged = state.kkt <= self.options.tolerance;
@@ -218,7 +232,12 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
                 Ok((state, None))
             }
             Err(EvaluationError::Failed(_)) => Ok((self.give_up(state), None)),
-            Ok(next) => {
+            Ok(None) => {
+                state.nulls += 1;
+                Ok((state, None))
+            }
+            Ok(Some(next)) => {
+                state.nulls = 0;
                 update_hessian(&mut state, &now, &next);
                 let full = size >= 0.99 * state.radius;
                 state.last_step = next.x.iter().zip(&now.x).fold(0.0, |a, (b, c)| a.max((b - c).abs()));
@@ -227,6 +246,8 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
                     state.radius *= 2.0;
                 }
                 state.stalled = if state.last_step < STILL { state.stalled + 1 } else { 0 };
+                state.earlier.push_front(now);
+                state.earlier.truncate(bundle::KEPT);
                 state.iterate = Some(next);
                 state.remember(self.options.tolerance.max(FEASIBLE));
                 Ok((state, None))
@@ -255,10 +276,39 @@ impl Sqp {
         radius: f64,
     ) -> Option<QpSolution> {
         let scaled = &problem.problem.as_ref()?.scaled;
-        let limit = radius;
-        let lower: Vec<f64> = now.x.iter().zip(&scaled.lower).map(|(x, l)| (l - x).max(-limit)).collect();
-        let upper: Vec<f64> = now.x.iter().zip(&scaled.upper).map(|(x, u)| (u - x).min(limit)).collect();
+        let (lower, upper) = self.room(&now.x, scaled, radius);
         Qp { hessian, values, slopes: &now.slopes, lower: &lower, upper: &upper }.solve()
+    }
+
+    /// The sub-problem with all gradients met within the tolerance of the point, if there are several: at a kink no single one says
+    /// where to go. Lowers the KKT residual to that of their combination.
+    fn at_kink<P: ConstrainedProblem + ?Sized>(
+        &self,
+        problem: &Problems<'_, P>,
+        state: &mut SqpState,
+        now: &Iterate,
+    ) -> Option<QpSolution> {
+        let tolerance = self.options.tolerance;
+        let near = |i: &&Iterate| i.x.iter().zip(&now.x).all(|(a, b)| (a - b).abs() <= tolerance);
+        let beside: Vec<&Iterate> = state.earlier.iter().filter(near).collect();
+        if beside.is_empty() || state.kkt <= tolerance {
+            return None;
+        }
+        let scaled = &problem.problem.as_ref()?.scaled;
+        let (lower, upper) = self.room(&now.x, scaled, state.radius);
+        let (solution, kkt) = bundle::solve(now, &beside, &state.hessian, &lower, &upper)?;
+        let combined = 1 + beside.len();
+        if kkt < state.kkt {
+            (state.kkt, state.combined) = (kkt, combined);
+        }
+        Some(solution)
+    }
+
+    /// Bounds of a step.
+    fn room<P: ?Sized>(&self, x: &[f64], scaled: &Scaled<'_, P>, radius: f64) -> (Vec<f64>, Vec<f64>) {
+        let lower = x.iter().zip(&scaled.lower).map(|(x, l)| (l - x).max(-radius)).collect();
+        let upper = x.iter().zip(&scaled.upper).map(|(x, u)| (u - x).min(radius)).collect();
+        (lower, upper)
     }
 
     /// A point that improves the merit and has a gradient: a point without one counts as refused, like one without values.
@@ -268,12 +318,13 @@ impl Sqp {
         state: &mut SqpState,
         now: &Iterate,
         qp: &QpSolution,
-    ) -> Result<Iterate, EvaluationError> {
+    ) -> Result<Option<Iterate>, EvaluationError> {
         let mut longest = 1.0;
         loop {
-            let (x, values, share) = self.search(problem, state, now, qp, longest)?;
+            let found = self.search(problem, state, now, qp, longest)?;
+            let Some((x, values, share)) = found else { return Ok(None) };
             match differentiate(problem, &x) {
-                Ok(slopes) => return Ok(Iterate { x, values, slopes }),
+                Ok(slopes) => return Ok(Some(Iterate { x, values, slopes })),
                 Err(EvaluationError::Cancelled) => return Err(EvaluationError::Cancelled),
                 Err(EvaluationError::Failed(reason)) => state.failures.push(reason),
             }
@@ -281,7 +332,9 @@ impl Sqp {
         }
     }
 
-    /// Searches along the step, no further than `longest` of it; returns an accepted point with its share of the step.
+    /// Searches along the step, no further than `longest` of it; returns an accepted point with its share of the step. A refused trial
+    /// within the tolerance of the point lies beyond a kink: its gradient is kept, and nothing is returned (a null step, Lemarechal
+    /// 1975), so that the next sub-problem knows both sides.
     fn search<P: ConstrainedProblem + ?Sized>(
         &self,
         problem: &mut Problems<'_, P>,
@@ -289,7 +342,8 @@ impl Sqp {
         now: &Iterate,
         qp: &QpSolution,
         longest: f64,
-    ) -> Result<(Vec<f64>, Values, f64), EvaluationError> {
+    ) -> Result<Option<(Vec<f64>, Values, f64)>, EvaluationError> {
+        let longest_change = qp.step.iter().fold(0.0f64, |a, d| a.max(d.abs()));
         let penalties = state.penalties.clone();
         let missed = |v: &Values| v.weighted_violation(&penalties);
         let merit = |v: &Values| v.objective + missed(v);
@@ -308,13 +362,22 @@ impl Sqp {
                     state.failures.push(reason);
                     share *= 0.5;
                 }
-                Ok(values) if enough(&values, share) => return Ok((x, values, share)),
+                Ok(values) if enough(&values, share) => return Ok(Some((x, values, share))),
                 Ok(values) => {
                     let curved = share == 1.0 && missed(&values) > missed(&now.values);
                     if curved
                         && let Some(found) = self.corrected(problem, state, now, qp, &values, &enough)?
                     {
-                        return Ok((found.0, found.1, share));
+                        return Ok(Some((found.0, found.1, share)));
+                    }
+                    let beside = share * longest_change <= self.options.tolerance;
+                    if beside
+                        && state.nulls < bundle::KEPT
+                        && let Ok(slopes) = differentiate(problem, &x)
+                    {
+                        state.earlier.push_front(Iterate { x, values, slopes });
+                        state.earlier.truncate(bundle::KEPT);
+                        return Ok(None);
                     }
                     // Minimum of the parabola through both merits and the slope.
                     let rise = merit(&values) - here - share * slope;
@@ -472,7 +535,8 @@ fn update_hessian(state: &mut SqpState, last: &Iterate, next: &Iterate) {
     let s = DVector::from_iterator(last.x.len(), next.x.iter().zip(&last.x).map(|(b, a)| b - a));
     let mut y = lagrangian(&next.slopes, &state.multipliers) - lagrangian(&last.slopes, &state.multipliers);
     let (ss, sy) = (s.norm_squared(), s.dot(&y));
-    if ss == 0.0 {
+    let jump = ss.sqrt() < SHORT && y.norm() > STEEP * ss.sqrt();
+    if ss == 0.0 || jump {
         return;
     }
     if state.fresh_hessian && sy > 0.0 {

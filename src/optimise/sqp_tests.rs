@@ -126,3 +126,29 @@ fn a_start_that_fails_and_a_cancelled_run_are_outcomes() {
     }
     assert_eq!(minimise(&Stopped, &[0.5], SqpOptions::default()).unwrap().outcome, Outcome::Cancelled);
 }
+
+#[test]
+fn an_optimum_on_a_kink_is_certified_by_a_combination_of_gradients() {
+    /// `max(x + y^2, y^2 - 2 x) + y / 10`: a valley with a sharp bottom at x = 0.
+    struct Valley;
+    impl ConstrainedProblem for Valley {
+        fn bounds(&self) -> (Vec<f64>, Vec<f64>) {
+            (vec![-1.0; 2], vec![1.0; 2])
+        }
+        fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
+            let objective = x[0].max(-2.0 * x[0]) + x[1] * x[1] + 0.1 * x[1] + 1.0;
+            Ok(Values { objective, inequalities: vec![x[1] - 0.9], equalities: vec![] })
+        }
+        fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
+            let across = if x[0] >= 0.0 { 1.0 } else { -2.0 };
+            let objective = vec![across, 2.0 * x[1] + 0.1];
+            Ok(Slopes { objective, inequalities: vec![vec![0.0, 1.0]], equalities: vec![] })
+        }
+    }
+    for start in [[0.7, 0.4], [-0.3, 0.8], [0.01, -0.9]] {
+        let end = minimise(&Valley, &start, SqpOptions::default()).unwrap();
+        assert_eq!(end.outcome, Outcome::Converged, "from {start:?}: {:?}", end.history.last());
+        assert!(end.x[0].abs() < 1e-5 && (end.x[1] + 0.05).abs() < 1e-5, "{:?}", end.x);
+        assert!(end.kkt <= 1e-6 && end.combined > 1, "{} gradients", end.combined);
+    }
+}

@@ -4,7 +4,7 @@ use super::{Outcome, Slopes, Values};
 use crate::run::IterationEvent;
 use argmin::core::{Problem, State, TerminationReason, TerminationStatus};
 use nalgebra::DMatrix;
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::time::Duration;
 
 /// A weight exceeds its multiplier by this factor, so that steps of the sub-problem descend.
@@ -49,6 +49,10 @@ pub(super) struct Incumbent {
 pub struct SqpState {
     pub(super) iterate: Option<Iterate>,
     pub(super) incumbent: Option<Incumbent>,
+    /// Points accepted before, the latest first.
+    pub(super) earlier: VecDeque<Iterate>,
+    /// Null steps since the last accepted point.
+    pub(super) nulls: usize,
     pub(super) hessian: DMatrix<f64>,
     pub(super) fresh_hessian: bool,
     pub(super) multipliers: Multipliers,
@@ -57,6 +61,10 @@ pub struct SqpState {
     /// Longest change of a scaled variable in one iteration.
     pub(super) radius: f64,
     pub(super) kkt: f64,
+    /// Gradients whose combination the KKT residual is of.
+    pub(super) combined: usize,
+    /// KKT residual of the point before, by its own gradient alone.
+    pub(super) last_kkt: f64,
     pub(super) last_step: f64,
     pub(super) stalled: u32,
     pub(super) failures: Vec<String>,
@@ -142,12 +150,16 @@ impl State for SqpState {
         Self {
             iterate: None,
             incumbent: None,
+            earlier: VecDeque::new(),
+            nulls: 0,
             hessian: DMatrix::zeros(0, 0),
             fresh_hessian: true,
             multipliers: Multipliers::default(),
             penalties: Vec::new(),
             radius: f64::INFINITY,
             kkt: f64::INFINITY,
+            combined: 1,
+            last_kkt: f64::INFINITY,
             last_step: 0.0,
             stalled: 0,
             failures: Vec::new(),

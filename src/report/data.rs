@@ -1,6 +1,6 @@
 //! Content of `report.json`. Every number that has a unit names it in its key or stands beside it.
 
-use super::{RivalRun, StartsReport};
+use super::{ParetoReport, RivalRun, StartsReport};
 use crate::gradient::{EngineName, TaylorRow};
 use crate::optimise::{Curvature, Outcome};
 use crate::orbit::Recording;
@@ -44,6 +44,8 @@ pub struct Report {
     pub starts: Option<StartsReport>,
     /// The same search by other methods and gradient engines, if the study asks for them; its own is the first.
     pub rivals: Vec<RivalRun>,
+    /// The least loss over a limit on another quantity, if the study asks for it.
+    pub pareto: Option<ParetoReport>,
     /// Work done.
     pub cost: CostReport,
     /// What is assumed and why.
@@ -181,6 +183,9 @@ pub struct KktReport {
     pub residual: Option<f64>,
     /// Wanted residual.
     pub tolerance: f64,
+    /// Gradients, met within the tolerance of the design, whose combination the residual is of: 1 where the loss is smooth,
+    /// more where the optimum lies on a kink.
+    pub combined: u64,
     /// Curvature along the directions that the limits leave free; none where no optimum was reached. Watts per box squared.
     pub curvature: Option<Curvature>,
     /// What it says.

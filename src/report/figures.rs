@@ -1,5 +1,6 @@
 //! The figures of a report.
 
+use super::ParetoReport;
 use super::html::units;
 use super::svg::{
     FOUND, LIMIT, SECOND, SKY, START, THIRD, axis, half, legend_below, over_cycle, render, styled, tight_axis,
@@ -114,6 +115,21 @@ pub fn cylinder(curve: &[(f64, f64)], name: &str) -> String {
         .with_y_tick_step(step)
         .with_height(220.0);
     render(plots, layout, name)
+}
+
+/// A front: the least loss over the limit on another quantity.
+pub fn front(p: &ParetoReport, name: &str) -> String {
+    let found: Vec<(f64, f64)> = p.points.iter().filter_map(|q| Some((q.limit, q.loss_w?))).collect();
+    let points = || found.iter().copied();
+    let plots: Vec<Plot> = vec![
+        LinePlot::new().with_data(points()).with_color(FOUND).with_stroke_width(1.8).into(),
+        ScatterPlot::new().with_data(points()).with_color(FOUND).with_size(4.0).into(),
+    ];
+    let (across, up): (Vec<f64>, Vec<f64>) = found.iter().copied().unzip();
+    let layout = half(styled(Layout::auto_from_plots(&plots)))
+        .with_x_label(format!("{} {} [{}]", p.quantity.replace('-', " "), p.sense, units(&p.unit)))
+        .with_y_label("least mean friction loss [W]");
+    render(plots, scaled_up(scaled_across(layout, &across), &up), name)
 }
 
 /// Columns over the varied one: what was found as curves, the reference as points.

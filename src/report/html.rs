@@ -53,6 +53,7 @@ pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
         })
         .collect();
     let convergence = (!report.history.is_empty()).then(|| figures::convergence(report, "convergence"));
+    let front = report.pareto.as_ref().map(|p| figures::front(p, "front"));
     let cylinder = (!findings.cylinder.is_empty()).then(|| figures::cylinder(&findings.cylinder, "cylinder"));
     let study = toml::to_string(&report.provenance.study).unwrap_or_default();
     let mut environment = environment();
@@ -61,6 +62,7 @@ pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
         r => Value::from(Serde(report)),
         cycles => Value::from(Serde(cycles)),
         convergence,
+        front,
         cylinder,
         touch_mpa => TOUCH_MPA,
         style => STYLE,

@@ -26,7 +26,7 @@ pub use comparison::{
 pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
 pub use html::html;
-pub use searches::{LocalOptimum, RivalRun, StartRun, StartsReport};
+pub use searches::{LocalOptimum, ParetoPoint, ParetoReport, RivalRun, StartRun, StartsReport, pareto_csv};
 pub use vtk::film_vtk;
 
 use std::path::Path;
@@ -46,6 +46,9 @@ pub fn write_folder(findings: &Findings, folder: &Path) -> std::io::Result<()> {
     if findings.curves.iter().any(|c| c.sensitivity.is_some()) {
         let csv = sensitivity_csv(findings).map_err(std::io::Error::other)?;
         std::fs::write(folder.join("sensitivity.csv"), csv)?;
+    }
+    if let Some(front) = &findings.report.pareto {
+        std::fs::write(folder.join("pareto.csv"), pareto_csv(front).map_err(std::io::Error::other)?)?;
     }
     for (k, c) in findings.curves.iter().enumerate() {
         for (surface, text) in film_vtk(c) {

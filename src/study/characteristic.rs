@@ -41,6 +41,7 @@ pub(super) fn refuse_search(file: &StudyFile, faults: &mut Faults) -> bool {
     faults.unused(&file.gradient, "gradient", why);
     faults.unused(&file.optimiser, "optimiser", why);
     faults.unused(&file.comparison, "comparison", why);
+    faults.unused(&file.pareto, "pareto", why);
     true
 }
 

@@ -7,10 +7,12 @@ use super::document::{Format, parse};
 use super::faults::{Fault, Faults, StudyErrors, line_of, without_nulls};
 use super::file::{FilmModelName, StudyFile};
 use super::oil::OilUse;
+use super::pareto::ParetoPlan;
 use super::plans::{BearingPlan, ConstraintPlan, FilmPlan, OilPlan, OperatingPoint, ParameterPlan};
 use super::searches::SearchPlan;
 use super::{
-    FORMAT, bearings, characteristic, comparison, constraints, film, heat, loads, oil, parameters, sections,
+    FORMAT, bearings, characteristic, comparison, constraints, film, heat, loads, oil, parameters, pareto,
+    sections,
 };
 use crate::cranktrain::{BearingParameter, Cylinder, VeeEngine};
 use crate::gradient::EngineName;
@@ -57,6 +59,7 @@ pub struct Study {
     pub sharpness: f64,
     pub(super) characteristic: Option<CharacteristicPlan>,
     pub(super) comparison: Option<ComparisonPlan>,
+    pub(super) pareto: Option<ParetoPlan>,
     pub(super) cylinder: Option<Cylinder>,
     pub(super) vee: Option<VeeEngine>,
 }
@@ -153,8 +156,17 @@ fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Optio
     if faults.any() {
         return None;
     }
-    let Search { points, parameters, constraints, engine, perturbation, optimiser, sharpness, comparison } =
-        search?;
+    let Search {
+        points,
+        parameters,
+        constraints,
+        engine,
+        perturbation,
+        optimiser,
+        sharpness,
+        comparison,
+        pareto,
+    } = search?;
     let mut study = Study {
         hash: String::new(),
         bearings: named.into_iter().map(|(_, plan)| plan).collect::<Option<_>>()?,
@@ -163,6 +175,7 @@ fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Optio
         constraints,
         characteristic,
         comparison,
+        pareto,
         film: film?,
         orbit: orbit?,
         oil: oil?,
@@ -193,6 +206,7 @@ struct Search {
     optimiser: SearchPlan,
     sharpness: f64,
     comparison: Option<ComparisonPlan>,
+    pareto: Option<ParetoPlan>,
 }
 
 impl Search {
@@ -207,6 +221,7 @@ impl Search {
             optimiser: SearchPlan::default(),
             sharpness: sections::SHARPNESS,
             comparison: None,
+            pareto: None,
         }
     }
 }
@@ -223,9 +238,11 @@ fn search(
     let all = parameters.as_ref().filter(|_| faults.count() == before).map(Vec::len);
     let constraints = constraints::constraints(file, named, faults);
     let comparison = comparison::comparison(file, all, faults);
+    let pareto = pareto::pareto(file, named, faults);
     let (gradient, optimiser) = match file.comparison.is_absent() {
         true => (sections::gradient(file, faults), sections::optimiser(file, faults)),
         false => {
+            faults.unused(&file.pareto, "pareto", comparison::WHY);
             let perturbation = comparison::perturbation(file, faults);
             (perturbation.map(|eps| (EngineName::Adj, eps)), comparison::sharpness(file, faults))
         }
@@ -240,6 +257,7 @@ fn search(
         optimiser,
         sharpness,
         comparison,
+        pareto,
     })
 }
 

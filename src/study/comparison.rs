@@ -11,7 +11,7 @@ use crate::gradient::EngineName;
 
 const PATH: &str = "comparison";
 /// Why sections of the search mean nothing here.
-const WHY: &str = "the study compares gradient engines instead of searching a design";
+pub(super) const WHY: &str = "the study compares gradient engines instead of searching a design";
 
 /// A checked comparison.
 #[derive(Debug, Clone, PartialEq)]

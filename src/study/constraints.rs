@@ -25,7 +25,7 @@ pub(super) fn constraints(
     Some(plans)
 }
 
-fn constraint(
+pub(super) fn constraint(
     c: &ConstraintFile,
     path: &str,
     bearings: &Bearings,
@@ -116,7 +116,7 @@ fn needs_wear(path: &str, bearings: &Bearings, only: Option<usize>, faults: &mut
     }
 }
 
-fn limit_si(quantity: QuantityName, text: &str) -> Result<f64, String> {
+pub(super) fn limit_si(quantity: QuantityName, text: &str) -> Result<f64, String> {
     match quantity {
         QuantityName::MinFilmThickness => text.parse::<Length>().map(|v| v.si()).map_err(|e| e.to_string()),
         QuantityName::ContactLoss | QuantityName::HydrodynamicLoss => {

@@ -31,6 +31,7 @@ mod methods;
 mod observe;
 mod oil;
 mod parameters;
+mod pareto;
 mod plans;
 mod prove;
 mod rheology;

@@ -4,6 +4,7 @@ use super::build::{Plan, plan};
 use super::check::Study;
 use super::faults::pointer;
 use super::methods::methods;
+use super::pareto::front;
 use super::searches::{rivals, searches};
 use super::vocabulary::QuantityName;
 use super::{observe, sensitivity};
@@ -49,6 +50,7 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
     let known = minimum.values.as_ref().and_then(|_| revisit(study, plan, minimum, context));
     let mut findings = report(study, plan, minimum, known, context);
     findings.report.rivals = rivals(study, context, store);
+    findings.report.pareto = front(study, &searched, context, store);
     findings.report.starts = searched.starts;
     let cost = &mut findings.report.cost;
     let (simulations, gradients) = searched.others;
@@ -84,6 +86,7 @@ fn report(
     let report = &mut findings.report;
     report.design = design(study, &minimum.x);
     report.kkt.residual = minimum.kkt.is_finite().then_some(minimum.kkt);
+    report.kkt.combined = minimum.combined as u64;
     report.history = minimum.history.clone();
     if let Some(known) = &known {
         report.objective = objective(study, plan, known);
@@ -147,6 +150,7 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
         constraints: unknown_constraints(study),
         kkt: KktReport {
             residual: None,
+            combined: 1,
             tolerance: study.optimiser.options.settings.tolerance,
             curvature: None,
             verdict: None,
@@ -156,6 +160,7 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
         orbit: Vec::new(),
         history: Vec::new(),
         starts: None,
+        pareto: None,
         rivals: Vec::new(),
         cost: CostReport {
             total: Default::default(),
@@ -269,7 +274,7 @@ fn unknown_constraints(study: &Study) -> Vec<ConstraintReport> {
     .collect()
 }
 
-fn words(sense: Sense) -> &'static str {
+pub(super) fn words(sense: Sense) -> &'static str {
     match sense {
         Sense::AtLeast => "at least",
         Sense::AtMost => "at most",

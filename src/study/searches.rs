@@ -16,7 +16,7 @@ use std::time::Instant;
 const SAME_LOSS: f64 = 1e-4;
 const SAME_DESIGN: f64 = 1e-2;
 /// Violation up to which an end counts among the feasible ones.
-const FEASIBLE: f64 = 1e-5;
+pub(super) const FEASIBLE: f64 = 1e-5;
 
 /// How a study searches.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -43,7 +43,7 @@ pub(super) struct Searched<'r> {
 
 /// Lets a plan save what it knows, and gives it what was saved of the same study by the same program; returns the number of
 /// simulations that were known.
-fn resume<'r>(study: &Study, plan: &mut Plan<'r>, name: String, store: &'r dyn Store) -> u64 {
+pub(super) fn resume<'r>(study: &Study, plan: &mut Plan<'r>, name: String, store: &'r dyn Store) -> u64 {
     let head = format!("{} {} {name}\n", env!("CARGO_PKG_VERSION"), study.hash);
     let found = store.load(&name);
     let rest = found.as_deref().and_then(|all| all.strip_prefix(head.as_bytes()));

@@ -46,7 +46,7 @@ pub use oil::{
     ViscosityPointFile,
 };
 pub use search::{
-    ConstraintFile, GradientFile, ObjectiveFile, OperatingPointFile, OptimiserFile, ParameterFile,
+    ConstraintFile, GradientFile, ObjectiveFile, OperatingPointFile, OptimiserFile, ParameterFile, ParetoFile,
 };
 pub use surface::{ContactIntegralName, ContactName, RoughnessFile, ShapeFile, ShapeKind, SurfaceName};
 
@@ -105,6 +105,8 @@ section! {
         parameters: Vec<Given<ParameterFile>>,
         /// Limits of a safe design.
         constraints: Vec<Given<ConstraintFile>>,
+        /// The least loss for each of a list of limits on another quantity.
+        pareto: ParetoFile,
         /// How gradients are computed.
         gradient: GradientFile,
         /// How the design is searched.

@@ -59,6 +59,20 @@ section! {
 }
 
 section! {
+    /// A front: the least loss for each of a list of limits on another quantity, beside the search itself.
+    ParetoFile {
+        /// The quantity. A limit of [[constraints]] on the same one gives way to the list.
+        quantity: QuantityName,
+        /// Name of the bearing; all of them if absent.
+        bearing: String,
+        /// Smallest values allowed, one search each, with unit.
+        at_least: Vec<QuantityText>,
+        /// Largest values allowed, one search each, with unit.
+        at_most: Vec<QuantityText>,
+    }
+}
+
+section! {
     /// Gradient engine.
     GradientFile {
         /// "ADJ" (default), "TRA", "CEN", "FW" or "BW".
