@@ -67,6 +67,7 @@
 mod bundle;
 mod cobyla;
 mod curvature;
+mod descent;
 mod design;
 mod lagrangian;
 mod methods;

@@ -14,17 +14,10 @@ use super::problem::Scaled;
 use super::qp::{Qp, QpSolution};
 use super::state::Iterate;
 use super::{ConstrainedProblem, EvaluationError, Multipliers, Outcome, Slopes, SqpState, Values};
-use crate::math::dot;
 use crate::run::IterationEvent;
 use argmin::core::{Error, Executor, KV, Problem, Solver, State, TerminationStatus};
 use nalgebra::{DMatrix, DVector};
 
-/// Share of the predicted decrease that a step must achieve (Armijo).
-const ARMIJO: f64 = 1e-4;
-/// Shortest step tried.
-const SHORTEST: f64 = 1e-7;
-/// Rounding of the merit function that a search must not stumble over.
-const ROUNDING: f64 = 1e-12;
 /// Largest change of a scaled variable that counts as standing still, and how often in a row ends the search.
 const STILL: f64 = 1e-9;
 const STALLED: u32 = 3;
@@ -84,7 +77,7 @@ pub struct Minimum {
 
 /// The argmin solver.
 pub struct Sqp {
-    options: SqpOptions,
+    pub(super) options: SqpOptions,
 }
 
 impl Sqp {
@@ -95,8 +88,8 @@ impl Sqp {
 }
 
 /// What argmin carries for the solver.
-struct Operator<'p, P: ?Sized> {
-    scaled: Scaled<'p, P>,
+pub(super) struct Operator<'p, P: ?Sized> {
+    pub(super) scaled: Scaled<'p, P>,
 }
 
 /// Minimises a problem from a start; the start is moved into the bounds if it lies outside.
@@ -165,7 +158,7 @@ fn settle_last<P: ConstrainedProblem + ?Sized>(
     }
 }
 
-type Problems<'p, P> = Problem<Operator<'p, P>>;
+pub(super) type Problems<'p, P> = Problem<Operator<'p, P>>;
 
 impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for Sqp {
     fn name(&self) -> &str {
@@ -267,7 +260,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
 }
 
 impl Sqp {
-    fn sub_problem<P: ConstrainedProblem + ?Sized>(
+    pub(super) fn sub_problem<P: ConstrainedProblem + ?Sized>(
         &self,
         problem: &mut Problems<'_, P>,
         now: &Iterate,
@@ -311,113 +304,6 @@ impl Sqp {
         (lower, upper)
     }
 
-    /// A point that improves the merit and has a gradient: a point without one counts as refused, like one without values.
-    fn accept<P: ConstrainedProblem + ?Sized>(
-        &self,
-        problem: &mut Problems<'_, P>,
-        state: &mut SqpState,
-        now: &Iterate,
-        qp: &QpSolution,
-    ) -> Result<Option<Iterate>, EvaluationError> {
-        let mut longest = 1.0;
-        loop {
-            let found = self.search(problem, state, now, qp, longest)?;
-            let Some((x, values, share)) = found else { return Ok(None) };
-            match differentiate(problem, &x) {
-                Ok(slopes) => return Ok(Some(Iterate { x, values, slopes })),
-                Err(EvaluationError::Cancelled) => return Err(EvaluationError::Cancelled),
-                Err(EvaluationError::Failed(reason)) => state.failures.push(reason),
-            }
-            longest = 0.5 * share;
-        }
-    }
-
-    /// Searches along the step, no further than `longest` of it; returns an accepted point with its share of the step. A refused trial
-    /// within the tolerance of the point lies beyond a kink: its gradient is kept, and nothing is returned (a null step, Lemarechal
-    /// 1975), so that the next sub-problem knows both sides.
-    fn search<P: ConstrainedProblem + ?Sized>(
-        &self,
-        problem: &mut Problems<'_, P>,
-        state: &mut SqpState,
-        now: &Iterate,
-        qp: &QpSolution,
-        longest: f64,
-    ) -> Result<Option<(Vec<f64>, Values, f64)>, EvaluationError> {
-        let longest_change = qp.step.iter().fold(0.0f64, |a, d| a.max(d.abs()));
-        let penalties = state.penalties.clone();
-        let missed = |v: &Values| v.weighted_violation(&penalties);
-        let merit = |v: &Values| v.objective + missed(v);
-        let here = merit(&now.values);
-        let slope =
-            dot(&now.slopes.objective, &qp.step) - (missed(&now.values) - missed(&linearised(now, &qp.step)));
-        let enough = |v: &Values, share: f64| {
-            merit(v) <= here + ARMIJO * share * slope.min(0.0) + ROUNDING * here.abs()
-        };
-        let mut share = longest;
-        while share >= SHORTEST {
-            let x = moved(problem, &now.x, &qp.step, share);
-            match evaluate(problem, &x) {
-                Err(EvaluationError::Cancelled) => return Err(EvaluationError::Cancelled),
-                Err(EvaluationError::Failed(reason)) => {
-                    state.failures.push(reason);
-                    share *= 0.5;
-                }
-                Ok(values) if enough(&values, share) => return Ok(Some((x, values, share))),
-                Ok(values) => {
-                    let curved = share == 1.0 && missed(&values) > missed(&now.values);
-                    if curved
-                        && let Some(found) = self.corrected(problem, state, now, qp, &values, &enough)?
-                    {
-                        return Ok(Some((found.0, found.1, share)));
-                    }
-                    let beside = share * longest_change <= self.options.tolerance;
-                    if beside
-                        && state.nulls < bundle::KEPT
-                        && let Ok(slopes) = differentiate(problem, &x)
-                    {
-                        state.earlier.push_front(Iterate { x, values, slopes });
-                        state.earlier.truncate(bundle::KEPT);
-                        return Ok(None);
-                    }
-                    // Minimum of the parabola through both merits and the slope.
-                    let rise = merit(&values) - here - share * slope;
-                    let best = if rise > 0.0 { -0.5 * slope * share * share / rise } else { 0.5 * share };
-                    share = best.clamp(0.1 * share, 0.5 * share);
-                }
-            }
-        }
-        Err(EvaluationError::Failed("no step along the search direction improves the design".into()))
-    }
-
-    /// Second-order correction: the step again, with the constraints as they really are at its end.
-    fn corrected<P: ConstrainedProblem + ?Sized>(
-        &self,
-        problem: &mut Problems<'_, P>,
-        state: &SqpState,
-        now: &Iterate,
-        qp: &QpSolution,
-        there: &Values,
-        enough: &dyn Fn(&Values, f64) -> bool,
-    ) -> Result<Option<(Vec<f64>, Values)>, EvaluationError> {
-        let shifted = |rows: &[Vec<f64>], values: &[f64]| -> Vec<f64> {
-            rows.iter().zip(values).map(|(row, c)| c - dot(row, &qp.step)).collect()
-        };
-        let values = Values {
-            objective: now.values.objective,
-            inequalities: shifted(&now.slopes.inequalities, &there.inequalities),
-            equalities: shifted(&now.slopes.equalities, &there.equalities),
-        };
-        let Some(again) = self.sub_problem(problem, now, &state.hessian, &values, state.radius) else {
-            return Ok(None);
-        };
-        let x = moved(problem, &now.x, &again.step, 1.0);
-        match evaluate(problem, &x) {
-            Ok(values) if enough(&values, 1.0) => Ok(Some((x, values))),
-            Err(EvaluationError::Cancelled) => Err(EvaluationError::Cancelled),
-            _ => Ok(None),
-        }
-    }
-
     /// Names the end of a run that cannot go on.
     fn give_up(&self, state: SqpState) -> SqpState {
         let (kkt, violation) = state
@@ -429,7 +315,7 @@ impl Sqp {
     }
 }
 
-fn evaluate<P: ConstrainedProblem + ?Sized>(
+pub(super) fn evaluate<P: ConstrainedProblem + ?Sized>(
     problem: &mut Problems<'_, P>,
     x: &[f64],
 ) -> Result<Values, EvaluationError> {
@@ -438,7 +324,7 @@ fn evaluate<P: ConstrainedProblem + ?Sized>(
     result.map_err(|_| refused.unwrap_or(EvaluationError::Cancelled))
 }
 
-fn differentiate<P: ConstrainedProblem + ?Sized>(
+pub(super) fn differentiate<P: ConstrainedProblem + ?Sized>(
     problem: &mut Problems<'_, P>,
     x: &[f64],
 ) -> Result<Slopes, EvaluationError> {
@@ -476,33 +362,6 @@ fn report<P: ConstrainedProblem + ?Sized>(problem: &Problems<'_, P>, state: &mut
     };
     operator.scaled.problem.accepted(&news);
     state.history.push(news);
-}
-
-/// `x + share * step`, inside the bounds.
-fn moved<P: ConstrainedProblem + ?Sized>(
-    problem: &Problems<'_, P>,
-    x: &[f64],
-    step: &[f64],
-    share: f64,
-) -> Vec<f64> {
-    let bounds = problem.problem.as_ref().map(|o| (&o.scaled.lower, &o.scaled.upper));
-    (0..x.len())
-        .map(|j| {
-            let to = x[j] + share * step[j];
-            bounds.map_or(to, |(low, high)| to.clamp(low[j], high[j]))
-        })
-        .collect()
-}
-
-/// Values of the linear model after a step.
-fn linearised(now: &Iterate, step: &[f64]) -> Values {
-    let after =
-        |rows: &[Vec<f64>], values: &[f64]| rows.iter().zip(values).map(|(r, v)| v + dot(r, step)).collect();
-    Values {
-        objective: now.values.objective + dot(&now.slopes.objective, step),
-        inequalities: after(&now.slopes.inequalities, &now.values.inequalities),
-        equalities: after(&now.slopes.equalities, &now.values.equalities),
-    }
 }
 
 /// Gradient of the Lagrangian without the bounds.
