@@ -8,8 +8,8 @@
 //! vanishes; a convex combination of those on its sides does (Goldstein 1977, Clarke 1983). The multipliers of `g_i d <= t` are its
 //! shares, and the residual of the combined conditions is what [`super::Sqp`] judges optimality by.
 
+use super::kkt::kkt_residual;
 use super::qp::{Qp, QpSolution};
-use super::sqp::kkt_residual;
 use super::state::Iterate;
 use super::{Multipliers, Slopes, Values};
 use nalgebra::DMatrix;

@@ -69,6 +69,7 @@ mod cobyla;
 mod curvature;
 mod descent;
 mod design;
+mod kkt;
 mod lagrangian;
 mod methods;
 mod outcome;

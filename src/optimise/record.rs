@@ -1,8 +1,9 @@
 //! What every method keeps of its search: the problem in scaled variables, the best point, the history, counts.
 
+use super::kkt::kkt_residual;
 use super::problem::Scaled;
 use super::qp::Qp;
-use super::sqp::{CLOSE, FEASIBLE, Minimum, SqpOptions, kkt_residual};
+use super::sqp::{CLOSE, FEASIBLE, Minimum, SqpOptions};
 use super::{ConstrainedProblem, EvaluationError, Multipliers, Outcome, Slopes, Values};
 use crate::run::IterationEvent;
 use nalgebra::DMatrix;

@@ -10,6 +10,7 @@
 //! objective divided by its start value.
 
 use super::bundle;
+use super::kkt::{kkt_residual, lagrangian};
 use super::problem::Scaled;
 use super::qp::{Qp, QpSolution};
 use super::state::Iterate;
@@ -362,31 +363,6 @@ fn report<P: ConstrainedProblem + ?Sized>(problem: &Problems<'_, P>, state: &mut
     };
     operator.scaled.problem.accepted(&news);
     state.history.push(news);
-}
-
-/// Gradient of the Lagrangian without the bounds.
-fn lagrangian(slopes: &Slopes, multipliers: &Multipliers) -> DVector<f64> {
-    let mut g = DVector::from_column_slice(&slopes.objective);
-    let rows = slopes.inequalities.iter().zip(&multipliers.inequalities);
-    for (row, m) in rows.chain(slopes.equalities.iter().zip(&multipliers.equalities)) {
-        g += DVector::from_column_slice(row) * *m;
-    }
-    g
-}
-
-/// Largest of stationarity, complementarity and violation at a point, with the multipliers of its sub-problem. A bound's
-/// multiplier counts against the step that is left: it must vanish unless the point stands on the bound.
-pub(super) fn kkt_residual(values: &Values, slopes: &Slopes, qp: &QpSolution) -> f64 {
-    let m = &qp.multipliers;
-    let gradient = lagrangian(slopes, m);
-    let stationarity =
-        (0..gradient.len()).fold(0.0f64, |a, j| a.max((gradient[j] - m.lower[j] + m.upper[j]).abs()));
-    let complementarity =
-        values.inequalities.iter().zip(&m.inequalities).fold(0.0f64, |a, (c, m)| a.max((c * m).abs()));
-    let bounds = (m.lower.iter().zip(&qp.step))
-        .chain(m.upper.iter().zip(&qp.step))
-        .fold(0.0f64, |a, (m, d)| a.max((m * d).abs()));
-    stationarity.max(complementarity).max(bounds).max(values.violation())
 }
 
 /// Damped BFGS update with the change of the Lagrangian's gradient.
