@@ -1,6 +1,6 @@
 //! The command line as users meet it.
 
-use crate::common::{COARSE, here, merged};
+use crate::common::{COARSE, SMOOTH, copied_study, here};
 use assert_cmd::Command;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -11,19 +11,9 @@ fn stribeck() -> Command {
     command
 }
 
-/// A copy of the main study, changed as text, in a folder of its own with its data.
+/// A copy of the smooth study, changed as text, in a folder of its own with its data.
 fn study(folder: &tempfile::TempDir, changes: &[(&str, &str)]) -> PathBuf {
-    let mut text = std::fs::read_to_string(here(crate::common::SMOOTH)).unwrap();
-    for (from, to) in changes {
-        assert!(text.contains(from));
-        text = text.replacen(from, to, 1);
-    }
-    std::fs::create_dir_all(folder.path().join("data")).unwrap();
-    let data = "data/engine_pressure_170x215_digitised.csv";
-    std::fs::copy(here("studies").join(data), folder.path().join(data)).unwrap();
-    let path = folder.path().join("study.toml");
-    std::fs::write(&path, merged(&text)).unwrap();
-    path
+    copied_study(folder.path(), SMOOTH, changes)
 }
 
 const QUICK: (&str, &str) = ("[oil]", COARSE);

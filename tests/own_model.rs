@@ -5,7 +5,6 @@ mod ladder;
 mod mobility;
 mod pendulum;
 
-use crate::common::here;
 use nalgebra::Complex;
 use stribeck::dae::InvalidParameters;
 use stribeck::gradient::verdict;
@@ -278,18 +277,5 @@ fn cycle_unknowns_of_ones_own_are_found_and_differentiated() {
 
 #[test]
 fn the_example_in_the_documentation_is_the_one_that_is_tested() {
-    let tested = std::fs::read_to_string(here("tests/own_model.rs")).unwrap();
-    let between = |text: &str, from: &str, to: &str| -> String {
-        let lines = text.lines().skip_while(|l| *l != from).skip(1);
-        lines.take_while(|l| *l != to).map(|l| format!("{l}\n")).collect()
-    };
-    let tested = between(&tested, "// The example begins here.", "// The example ends here.");
-    let page = std::fs::read_to_string(here("src/dae/mod.rs")).unwrap();
-    let shown: String = page
-        .lines()
-        .map_while(|l| l.strip_prefix("//!"))
-        .map(|l| format!("{}\n", l.strip_prefix(' ').unwrap_or(l)))
-        .collect();
-    let shown = between(&shown, "```no_run", "```");
-    assert!(tested.lines().count() > 60 && tested == shown, "copy the example to src/dae/mod.rs:\n{tested}");
+    crate::common::assert_example("tests/own_model.rs", "src/dae/mod.rs", 60);
 }

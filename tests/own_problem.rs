@@ -1,7 +1,5 @@
 //! A problem of one's own through the public optimiser: the example of the crate page on `optimise`, held against its closed form.
 
-use crate::common::here;
-
 // The example begins here.
 use stribeck::optimise::{
     ConstrainedProblem, EvaluationError, Method, Minimum, SearchOptions, Slopes, Values, search,
@@ -69,18 +67,5 @@ fn a_can_is_as_high_as_wide_by_every_method() {
 
 #[test]
 fn the_example_in_the_documentation_is_the_one_that_is_tested() {
-    let between = |text: &str, from: &str, to: &str| -> String {
-        let lines = text.lines().skip_while(|l| *l != from).skip(1);
-        lines.take_while(|l| *l != to).map(|l| format!("{l}\n")).collect()
-    };
-    let tested = std::fs::read_to_string(here("tests/own_problem.rs")).unwrap();
-    let tested = between(&tested, "// The example begins here.", "// The example ends here.");
-    let page = std::fs::read_to_string(here("src/optimise/mod.rs")).unwrap();
-    let lines = page.lines().map_while(|l| l.strip_prefix("//!"));
-    let shown: String = lines.map(|l| format!("{}\n", l.strip_prefix(' ').unwrap_or(l))).collect();
-    let shown = between(&shown, "```no_run", "```");
-    assert!(
-        tested.lines().count() > 30 && tested == shown,
-        "copy the example to src/optimise/mod.rs:\n{tested}"
-    );
+    crate::common::assert_example("tests/own_problem.rs", "src/optimise/mod.rs", 30);
 }

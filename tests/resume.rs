@@ -1,6 +1,6 @@
 //! A run that is killed goes on where it was and ends with the same report.
 
-use crate::common::{COARSE, MAIN, here, merged};
+use crate::common::{COARSE, MAIN, copied_study};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, SystemTime};
@@ -31,24 +31,15 @@ fn report(out: &Path) -> serde_json::Value {
 
 /// The main study on a coarse mesh, from a corner of its box far from the optimum.
 fn study(folder: &Path) -> std::path::PathBuf {
-    let mut text = std::fs::read_to_string(here(MAIN)).unwrap();
-    for (from, to) in [
+    let changes = [
         ("[oil]", COARSE),
         ("name = \"big_end.width\"", "name = \"big_end.width\"\nstart = \"50 mm\""),
         (
             "name = \"big_end.diametral_clearance\"",
             "name = \"big_end.diametral_clearance\"\nstart = \"90 um\"",
         ),
-    ] {
-        assert!(text.contains(from));
-        text = text.replace(from, to);
-    }
-    std::fs::create_dir_all(folder.join("data")).unwrap();
-    let data = "data/engine_pressure_170x215_digitised.csv";
-    std::fs::copy(here("studies").join(data), folder.join(data)).unwrap();
-    let path = folder.join("study.toml");
-    std::fs::write(&path, merged(&text)).unwrap();
-    path
+    ];
+    copied_study(folder, MAIN, &changes)
 }
 
 #[test]

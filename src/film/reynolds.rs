@@ -15,7 +15,7 @@
 //!
 //! Deliberately not here: derivatives ([`super::linearise`], [`super::tangent`], [`super::cotangent`]), integrals.
 
-use super::cavitation::{Cavitation, CavityShear, Split};
+use super::cavitation::{Cavitation, CavityShear};
 use super::cells::Cell;
 use super::faces::{Face, Sides};
 use super::fields::Scalars;
@@ -216,18 +216,7 @@ impl Reynolds {
         q: &[f64],
         speed: f64,
     ) -> Sides<'c, N> {
-        self.sides_of(face, cells, |k| self.cavitation.split(q[k]), speed)
-    }
-
-    /// The same from what the unknowns stand for.
-    #[inline(always)]
-    pub(super) fn sides_of<'c, const N: usize>(
-        &self,
-        face: &Face,
-        cells: &'c [Cell<N>],
-        at: impl Fn(usize) -> Split,
-        speed: f64,
-    ) -> Sides<'c, N> {
+        let at = |k: usize| self.cavitation.split(q[k]);
         let (a, b) = (at(face.a), face.b.map(at));
         Sides {
             a: &cells[face.a],

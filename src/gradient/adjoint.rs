@@ -206,14 +206,14 @@ impl<'a, M: SensitiveDae> Backward<'a, M> {
         let (model, chain, of, weights) = (chain.model, &*chain, *of, &*weights);
         slots[..block.len()].par_iter_mut().zip(block).for_each(|(slot, n)| {
             let at = chain.at(n);
-            if !forced {
-                model.fix_balance(at, &mut slot.point);
-            } else {
+            if forced {
                 model.fix(at, &mut slot.point);
                 [&mut slot.by_z, &mut slot.by_rate, &mut slot.by_u].into_iter().for_each(|v| v.fill(0.0));
                 for (r, quantity) in of.iter().enumerate() {
                     slot.weigh(model, at, r, quantity.output, weights[r][n]);
                 }
+            } else {
+                model.fix_balance(at, &mut slot.point);
             }
         });
     }

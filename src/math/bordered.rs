@@ -37,10 +37,18 @@ pub struct Bordered {
 impl Bordered {
     /// Room for `blocks * b` band unknowns (none if `blocks` is 0) and `k` border unknowns.
     pub fn new(blocks: usize, b: usize, k: usize) -> Self {
+        Self::bordering((blocks > 0).then(|| CyclicBand::new(blocks, b)), blocks * b, k)
+    }
+
+    /// Room for packed factors of such a matrix, not for factorising.
+    pub fn keeper(blocks: usize, b: usize, k: usize) -> Self {
+        Self::bordering((blocks > 0).then(|| CyclicBand::keeper(blocks, b)), blocks * b, k)
+    }
+
+    fn bordering(band: Option<CyclicBand>, n: usize, k: usize) -> Self {
         assert!(k <= MOST, "at most {MOST} border unknowns");
-        let n = blocks * b;
         Self {
-            band: (n > 0).then(|| CyclicBand::new(blocks, b)),
+            band,
             n,
             k,
             columns: vec![0.0; n * (k + 1)],
@@ -49,16 +57,6 @@ impl Bordered {
             used: [[true; MOST]; 2],
             sigma_inverse: DMatrix::zeros(k, k),
         }
-    }
-
-    /// Room for packed factors of such a matrix, not for factorising.
-    pub fn keeper(blocks: usize, b: usize, k: usize) -> Self {
-        Self { band: (blocks > 0).then(|| CyclicBand::keeper(blocks, b)), ..Self::new(0, 0, k) }
-            .of(blocks * b)
-    }
-
-    fn of(self, n: usize) -> Self {
-        Self { n, columns: vec![0.0; n * (self.k + 1)], rows: vec![0.0; n * self.k], ..self }
     }
 
     /// Copies the factors into a keeper.
@@ -250,6 +248,26 @@ mod tests {
                 assert!((x[11 * c + i] - wanted).abs() < 1e-11 && (y[11 * c + i] - wanted).abs() < 1e-11);
             }
         }
+    }
+
+    #[test]
+    fn packed_factors_and_a_first_solve_beside_the_factors_give_the_same() {
+        let ((mut system, a, _), (mut beside, ..)) = (example(), example());
+        let mut first: Vec<f64> = (0..11).map(|i| f64::from(i) - 4.0).collect();
+        let (mut rhs, mut packed, mut transposed) = (first.clone(), first.clone(), first.clone());
+        let mut packed_transposed = first.clone();
+        system.factor(&a).unwrap();
+        beside.factor_and_solve(&a, &mut first).unwrap();
+        let mut keeper = Bordered::keeper(4, 2, 3);
+        beside.pack_into(&mut keeper);
+        system.solve(&mut rhs);
+        keeper.solve(&mut packed);
+        system.solve_transposed(&mut transposed);
+        keeper.solve_transposed(&mut packed_transposed);
+        // The very same operations on numbers that stand elsewhere.
+        assert_eq!(packed, rhs);
+        assert_eq!(packed_transposed, transposed);
+        assert!(first.iter().zip(&rhs).all(|(a, b)| (a - b).abs() <= 1e-14 * b.abs().max(1.0)));
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! COBYLA (Powell 1994) in the unit box: linear models from values at the corners of a simplex, no gradients. One gradient at its
 //! end says how good the end is.
 
+use super::minimum::Minimum;
 use super::record::Record;
-use super::sqp::{Minimum, SqpOptions};
+use super::sqp::SqpOptions;
 use super::{ConstrainedProblem, EvaluationError, Outcome, Values};
 use std::cell::RefCell;
 
@@ -27,21 +28,12 @@ pub(super) fn minimise<P: ConstrainedProblem + ?Sized>(
     start: &[f64],
     options: SqpOptions,
 ) -> Minimum {
-    let mut record = Record::new(problem, start, options);
-    let begin = record.start.clone();
-    let first = record.scale().and_then(|()| record.values(&begin));
-    let outcome = match first {
-        Ok(values) => {
-            let cancelled = search(&mut record, values);
-            end(&mut record, cancelled)
-        }
-        Err(EvaluationError::Cancelled) => Outcome::Cancelled,
-        Err(EvaluationError::Failed(reason)) => {
-            record.failures.push(reason);
-            Outcome::StartFailed
-        }
-    };
-    record.finish(outcome)
+    Record::new(problem, start, options).search(|record| {
+        let begin = record.start.clone();
+        let first = record.values(&begin)?;
+        let cancelled = search(record, first);
+        Ok(end(record, cancelled))
+    })
 }
 
 /// Judges the best point by its gradient.

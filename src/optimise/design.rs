@@ -86,15 +86,13 @@ pub struct DesignProblem<'r, M: SensitiveDae> {
     memory: Mutex<Memory>,
     /// Called with a snapshot at accepted designs.
     save: Option<Save<'r>>,
-    /// Work done when the last snapshot was taken.
-    saved: Mutex<(Cost, Cost)>,
 }
 
 type Key = Vec<u64>;
 /// Takes a snapshot.
 type Save<'r> = Box<dyn Fn(&[u8]) + Send + Sync + 'r>;
 
-#[derive(Default, Clone, Serialize, Deserialize)]
+#[derive(Default, Serialize, Deserialize)]
 struct Memory {
     values: BTreeMap<Key, Result<Values, EvaluationError>>,
     slopes: BTreeMap<Key, Slopes>,
@@ -105,6 +103,23 @@ struct Memory {
     tables: Option<(Key, Arc<Vec<GradientTable>>)>,
     cost: Cost,
     gradient_cost: Cost,
+    /// Work done when the last snapshot was taken.
+    #[serde(skip)]
+    saved: (Cost, Cost),
+}
+
+impl Memory {
+    /// Cycles of a design that are still at hand.
+    fn at_hand(&self, key: &Key) -> Option<Arc<Evaluated>> {
+        self.orbits.iter().find(|(k, _)| k == key).map(|(_, known)| known.clone())
+    }
+
+    /// Gradients asked for before; the search is at that design again, if its cycles are still at hand.
+    fn known_slopes(&mut self, key: &Key) -> Option<Slopes> {
+        let known = self.slopes.get(key).cloned()?;
+        self.base = self.at_hand(key).or(self.base.take());
+        Some(known)
+    }
 }
 
 impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
@@ -117,8 +132,7 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
         run: RunContext<'r>,
     ) -> Self {
         let (lower, upper) = bounds;
-        let (memory, saved) = Default::default();
-        Self { cases, limits, lower, upper, engine, run, memory, save: None, saved }
+        Self { cases, limits, lower, upper, engine, run, memory: Mutex::default(), save: None }
     }
 
     /// Hands a snapshot to `save` whenever a design was accepted and something new is known.
@@ -149,8 +163,8 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
         let key = key(x);
         let start = {
             let memory = self.lock();
-            if let Some((_, known)) = memory.orbits.iter().find(|(k, _)| *k == key) {
-                return Ok(known.clone());
+            if let Some(known) = memory.at_hand(&key) {
+                return Ok(known);
             }
             memory.base.clone().or_else(|| memory.orbits.back().map(|(_, first)| first.clone()))
         };
@@ -209,8 +223,7 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
 
     /// All that is known, for another process; a format of this version of the program.
     pub fn snapshot(&self) -> Vec<u8> {
-        let memory = self.lock().clone();
-        postcard::to_stdvec(&memory).unwrap_or_default()
+        postcard::to_stdvec(&*self.lock()).unwrap_or_default()
     }
 
     /// Takes over what another process knew; whether it could be read.
@@ -221,9 +234,7 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
             m.orbits.iter().all(|(_, e)| fits(e)) && m.base.iter().all(|e| fits(e))
         });
         if let (Ok(memory), true) = (found, usable) {
-            *self.saved.lock().unwrap_or_else(std::sync::PoisonError::into_inner) =
-                (memory.cost, memory.gradient_cost);
-            *self.lock() = memory;
+            *self.lock() = Memory { saved: (memory.cost, memory.gradient_cost), ..memory };
         }
         usable
     }
@@ -271,14 +282,9 @@ impl<M: SensitiveDae> ConstrainedProblem for DesignProblem<'_, M> {
     }
 
     fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
-        {
-            let mut memory = self.lock();
-            let (key, there) =
-                (key(x), memory.orbits.iter().find(|(k, _)| *k == key(x)).map(|o| o.1.clone()));
-            if let Some(known) = memory.slopes.get(&key).cloned() {
-                memory.base = there.or_else(|| memory.base.clone());
-                return Ok(known);
-            }
+        let key = key(x);
+        if let Some(known) = self.lock().known_slopes(&key) {
+            return Ok(known);
         }
         let at = self.evaluated(x)?;
         let tables = self.tables(x)?;
@@ -298,7 +304,7 @@ impl<M: SensitiveDae> ConstrainedProblem for DesignProblem<'_, M> {
         let inequalities = self.limits.iter().map(constraint).collect();
         let slopes = Slopes { objective, inequalities, equalities: Vec::new() };
         let mut memory = self.lock();
-        memory.slopes.insert(key(x), slopes.clone());
+        memory.slopes.insert(key, slopes.clone());
         memory.base = Some(at);
         Ok(slopes)
     }
@@ -307,10 +313,8 @@ impl<M: SensitiveDae> ConstrainedProblem for DesignProblem<'_, M> {
         self.run.progress.tell(&Event::Iteration(*news));
         let Some(save) = &self.save else { return };
         let costs = self.costs();
-        let mut saved = self.saved.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if *saved != costs {
+        if std::mem::replace(&mut self.lock().saved, costs) != costs {
             save(&self.snapshot());
-            *saved = costs;
         }
     }
 }

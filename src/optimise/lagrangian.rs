@@ -9,9 +9,10 @@
 //! The inner search moves the variables that are not held by a bound along a two-loop direction and projects the way back into
 //! the box. Deliberately not here: second derivatives, filters; for those see [`super::sqp`].
 
+use super::minimum::Minimum;
 use super::problem::Scaled;
 use super::record::Record;
-use super::sqp::{Minimum, SqpOptions};
+use super::sqp::SqpOptions;
 use super::{ConstrainedProblem, EvaluationError, Outcome, Slopes, Values};
 use crate::math::dot;
 use std::collections::VecDeque;
@@ -80,16 +81,7 @@ pub(super) fn minimise<P: ConstrainedProblem + ?Sized>(
     start: &[f64],
     options: SqpOptions,
 ) -> Minimum {
-    let mut record = Record::new(problem, start, options);
-    let outcome = record.scale().and_then(|()| outer(&mut record));
-    let outcome = outcome.unwrap_or_else(|e| match e {
-        EvaluationError::Cancelled => Outcome::Cancelled,
-        EvaluationError::Failed(reason) => {
-            record.failures.push(reason);
-            Outcome::StartFailed
-        }
-    });
-    record.finish(outcome)
+    Record::new(problem, start, options).search(outer)
 }
 
 fn outer<P: ConstrainedProblem + ?Sized>(record: &mut Record<'_, P>) -> Result<Outcome, EvaluationError> {

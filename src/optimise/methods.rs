@@ -3,7 +3,8 @@
 //! [`Method::Sqp`] is what the others are measured against: the augmented Lagrangian needs several times its simulations but no
 //! model of the constraints' curvature, COBYLA needs no gradients at all, which is for objectives with noise.
 
-use super::sqp::{Minimum, SqpOptions, minimise};
+use super::minimum::Minimum;
+use super::sqp::{SqpOptions, minimise};
 use super::{ConstrainedProblem, EvaluationError, Outcome, Slopes, Values, cobyla, lagrangian};
 use crate::run::IterationEvent;
 use argmin::core::Error;

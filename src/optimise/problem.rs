@@ -84,6 +84,13 @@ impl<'p, P: ConstrainedProblem + ?Sized> Scaled<'p, P> {
         Self { lower: scale(&low), upper: scale(&high), problem, origin, width, objective_scale: 1.0 }
     }
 
+    /// Divides the objective by its size at a point; one that happens to vanish there has no size to scale by.
+    pub fn scale_objective(&mut self, s: &[f64]) -> Result<(), EvaluationError> {
+        let size = self.values(s)?.objective.abs();
+        self.objective_scale = if size < 1e-8 { 1.0 } else { size };
+        Ok(())
+    }
+
     pub fn to_scaled(&self, x: &[f64]) -> Vec<f64> {
         (0..x.len())
             .map(|j| ((x[j] - self.origin[j]) / self.width[j]).clamp(self.lower[j], self.upper[j]))

@@ -1,20 +1,13 @@
 //! What every method keeps of its search: the problem in scaled variables, the best point, the history, counts.
 
 use super::kkt::kkt_residual;
+use super::minimum::{Ended, Incumbent, Minimum};
 use super::problem::Scaled;
 use super::qp::Qp;
-use super::sqp::{CLOSE, FEASIBLE, Minimum, SqpOptions};
-use super::{ConstrainedProblem, EvaluationError, Multipliers, Outcome, Slopes, Values};
+use super::sqp::SqpOptions;
+use super::{ConstrainedProblem, EvaluationError, Outcome, Slopes, Values};
 use crate::run::IterationEvent;
 use nalgebra::DMatrix;
-
-/// The best point so far.
-struct Best {
-    x: Vec<f64>,
-    values: Values,
-    kkt: f64,
-    multipliers: Multipliers,
-}
 
 pub(super) struct Record<'p, P: ?Sized> {
     pub scaled: Scaled<'p, P>,
@@ -25,7 +18,7 @@ pub(super) struct Record<'p, P: ?Sized> {
     pub failures: Vec<String>,
     evaluations: u64,
     gradients: u64,
-    best: Option<Best>,
+    best: Option<Incumbent>,
     history: Vec<IterationEvent>,
 }
 
@@ -45,22 +38,10 @@ impl<'p, P: ConstrainedProblem + ?Sized> Record<'p, P> {
         }
     }
 
-    /// Divides the objective by its size at the start.
-    pub fn scale(&mut self) -> Result<(), EvaluationError> {
-        let size = self.scaled.values(&self.start)?.objective.abs();
-        self.scaled.objective_scale = if size < 1e-8 { 1.0 } else { size };
-        Ok(())
-    }
-
     pub fn values(&mut self, s: &[f64]) -> Result<Values, EvaluationError> {
         self.evaluations += 1;
         let values = self.scaled.values(s)?;
-        let feasible = self.options.tolerance.max(FEASIBLE);
-        let rank = |v: &Values| (v.violation().max(feasible), v.objective);
-        if self.best.as_ref().is_none_or(|b| rank(&values) < rank(&b.values)) {
-            let (x, values) = (s.to_vec(), values.clone());
-            self.best = Some(Best { x, values, kkt: f64::INFINITY, multipliers: Multipliers::default() });
-        }
+        Incumbent::keep_better(&mut self.best, s, &values, self.options.tolerance);
         Ok(values)
     }
 
@@ -99,16 +80,14 @@ impl<'p, P: ConstrainedProblem + ?Sized> Record<'p, P> {
         let same = self.best.as_ref().is_some_and(|b| b.x == s);
         if same || kkt <= self.options.tolerance {
             let (x, values) = (s.to_vec(), values.clone());
-            self.best = Some(Best { x, values, kkt, multipliers: found.multipliers });
+            self.best = Some(Incumbent { x, values, kkt, combined: 1, multipliers: found.multipliers });
         }
         kkt
     }
 
     /// Names the end of a search that cannot go on.
     pub fn give_up(&self) -> Outcome {
-        let close =
-            |b: &Best| b.kkt <= CLOSE.max(10.0 * self.options.tolerance) && b.values.violation() <= CLOSE;
-        if self.best.as_ref().is_some_and(close) { Outcome::AlmostConverged } else { Outcome::NoProgress }
+        Incumbent::give_up(self.best.as_ref(), self.options.tolerance)
     }
 
     /// The best point, its optimality judged if it has not been.
@@ -124,29 +103,25 @@ impl<'p, P: ConstrainedProblem + ?Sized> Record<'p, P> {
         Ok(self.best.as_ref().map_or(f64::INFINITY, |b| b.kkt))
     }
 
-    pub fn finish(self, outcome: Outcome) -> Minimum {
-        let scale = self.scaled.objective_scale;
-        let restore = |v: &[f64]| v.iter().map(|m| m * scale).collect();
-        let (x, values, kkt, m) = match self.best {
-            Some(b) => (b.x, Some(b.values), b.kkt, b.multipliers),
-            None => (self.start, None, f64::INFINITY, Multipliers::default()),
-        };
-        Minimum {
+    /// Searches from the start, after scaling the objective by its size there; a failure there ends the search.
+    pub fn search(mut self, method: impl FnOnce(&mut Self) -> Result<Outcome, EvaluationError>) -> Minimum {
+        let scaled = self.scaled.scale_objective(&self.start);
+        let outcome = scaled.and_then(|()| method(&mut self)).unwrap_or_else(|e| match e {
+            EvaluationError::Cancelled => Outcome::Cancelled,
+            EvaluationError::Failed(reason) => {
+                self.failures.push(reason);
+                Outcome::StartFailed
+            }
+        });
+        let ended = Ended {
             outcome,
-            x: self.scaled.to_true(&x),
-            values: values.map(|v| Values { objective: v.objective * scale, ..v }),
-            multipliers: Multipliers {
-                inequalities: restore(&m.inequalities),
-                equalities: restore(&m.equalities),
-                lower: restore(&m.lower),
-                upper: restore(&m.upper),
-            },
-            kkt,
-            combined: 1,
+            best: self.best,
+            start: self.start,
             history: self.history,
             failures: self.failures,
             evaluations: self.evaluations,
             gradients: self.gradients,
-        }
+        };
+        ended.restored(&self.scaled)
     }
 }

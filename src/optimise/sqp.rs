@@ -11,10 +11,11 @@
 
 use super::bundle;
 use super::kkt::{kkt_residual, lagrangian};
+use super::minimum::{Ended, Incumbent, Minimum};
 use super::problem::Scaled;
 use super::qp::{Qp, QpSolution};
 use super::state::Iterate;
-use super::{ConstrainedProblem, EvaluationError, Multipliers, Outcome, Slopes, SqpState, Values};
+use super::{ConstrainedProblem, EvaluationError, Outcome, Slopes, SqpState, Values};
 use crate::run::IterationEvent;
 use argmin::core::{Error, Executor, KV, Problem, Solver, State, TerminationStatus};
 use nalgebra::{DMatrix, DVector};
@@ -22,10 +23,6 @@ use nalgebra::{DMatrix, DVector};
 /// Largest change of a scaled variable that counts as standing still, and how often in a row ends the search.
 const STILL: f64 = 1e-9;
 const STALLED: u32 = 3;
-/// Smallest violation that matters when points are compared.
-pub(super) const FEASIBLE: f64 = 1e-7;
-/// KKT residual and violation at which a search that cannot go on counts as almost converged.
-pub(super) const CLOSE: f64 = 1e-5;
 /// A KKT residual that does not fall below this share of the one before has come to a halt, perhaps at a kink.
 const STAGNANT: f64 = 0.7;
 /// A change of the gradient over a step this short that is this many times as large is the jump at a kink, no curvature.
@@ -49,31 +46,6 @@ impl Default for SqpOptions {
     fn default() -> Self {
         Self { tolerance: 1e-6, max_iterations: 60, step_limit: 0.4 }
     }
-}
-
-/// End of an optimisation, in true variables.
-#[derive(Debug, Clone)]
-pub struct Minimum {
-    /// How it ended.
-    pub outcome: Outcome,
-    /// Best point: feasible if any was, then of lowest objective.
-    pub x: Vec<f64>,
-    /// Values there; `None` if the start could not be evaluated.
-    pub values: Option<Values>,
-    /// Multipliers there: objective units per unit of constraint (bounds: per unit of variable in its box).
-    pub multipliers: Multipliers,
-    /// KKT residual there; infinite if its sub-problem was not solved.
-    pub kkt: f64,
-    /// Gradients, met within the tolerance of the point, whose combination that residual is of; 1 where the problem is smooth.
-    pub combined: usize,
-    /// Accepted points.
-    pub history: Vec<IterationEvent>,
-    /// Reasons of refused evaluations.
-    pub failures: Vec<String>,
-    /// Evaluations asked of the problem.
-    pub evaluations: u64,
-    /// Gradients asked of the problem.
-    pub gradients: u64,
 }
 
 /// The argmin solver.
@@ -101,46 +73,29 @@ pub fn minimise<P: ConstrainedProblem + ?Sized>(
 ) -> Result<Minimum, Error> {
     let mut scaled = Scaled::new(problem, start);
     let s = scaled.to_scaled(start);
-    if let Ok(values) = scaled.values(&s) {
-        // An objective that happens to vanish at the start has no size to scale by.
-        let size = values.objective.abs();
-        scaled.objective_scale = if size < 1e-8 { 1.0 } else { size };
-    }
-    let scale = scaled.objective_scale;
+    // A start that cannot be evaluated is told by the search itself.
+    let _ = scaled.scale_objective(&s);
     let result = Executor::new(Operator { scaled }, Sqp::new(options))
         .configure(|state: SqpState| state.start(s.clone()).max_iters(options.max_iterations))
         .ctrlc(false)
         .run()?;
     let (mut problem, mut state) = (result.problem, result.state);
     settle_last(options, &mut problem, &mut state);
-    let operator = problem.problem.ok_or_else(|| Error::msg("argmin lost the problem"))?;
-    let (x, values, kkt, multipliers) = match state.incumbent {
-        Some(best) => (best.x, Some(best.values), best.kkt, best.multipliers),
-        None => (s, None, f64::INFINITY, Multipliers::default()),
-    };
     let count = |name: &str| problem.counts.get(name).copied().unwrap_or(0);
-    let restore = |v: Vec<f64>| v.into_iter().map(|m| m * scale).collect();
-    Ok(Minimum {
-        outcome: state.outcome.unwrap_or(if kkt <= options.tolerance {
-            Outcome::Converged
-        } else {
-            Outcome::IterationLimit
-        }),
-        x: operator.scaled.to_true(&x),
-        values: values.map(|v| Values { objective: v.objective * scale, ..v }),
-        multipliers: Multipliers {
-            inequalities: restore(multipliers.inequalities),
-            equalities: restore(multipliers.equalities),
-            lower: restore(multipliers.lower),
-            upper: restore(multipliers.upper),
-        },
-        kkt,
-        combined: state.combined,
+    let (evaluations, gradients) = (count("evaluations"), count("gradients"));
+    let converged = state.incumbent.as_ref().is_some_and(|b| b.kkt <= options.tolerance);
+    let limit = if converged { Outcome::Converged } else { Outcome::IterationLimit };
+    let operator = problem.problem.ok_or_else(|| Error::msg("argmin lost the problem"))?;
+    let ended = Ended {
+        outcome: state.outcome.unwrap_or(limit),
+        best: state.incumbent,
+        start: s,
         history: state.history,
         failures: state.failures,
-        evaluations: count("evaluations"),
-        gradients: count("gradients"),
-    })
+        evaluations,
+        gradients,
+    };
+    Ok(ended.restored(&operator.scaled))
 }
 
 /// At the iteration limit nothing has yet judged the last point; its sub-problem costs no evaluation.
@@ -152,7 +107,7 @@ fn settle_last<P: ConstrainedProblem + ?Sized>(
     let Some(now) = state.iterate.clone().filter(|_| state.outcome.is_none()) else { return };
     let qp = Sqp::new(options).sub_problem(problem, &now, &state.hessian, &now.values, state.radius);
     if let Some(qp) = qp {
-        state.kkt = kkt_residual(&now.values, &now.slopes, &qp);
+        (state.kkt, state.combined) = (kkt_residual(&now.values, &now.slopes, &qp), 1);
         state.multipliers = qp.multipliers;
         report(problem, state, &now);
         state.judge(state.kkt <= options.tolerance);
@@ -183,7 +138,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
             Ok(slopes) => state.iterate = Some(Iterate { x, values, slopes }),
             Err(e) => return Ok((refuse(state, e, Outcome::StartFailed), None)),
         }
-        state.remember(self.options.tolerance.max(FEASIBLE));
+        state.remember(self.options.tolerance);
         Ok((state, None))
     }
 
@@ -243,7 +198,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
                 state.earlier.push_front(now);
                 state.earlier.truncate(bundle::KEPT);
                 state.iterate = Some(next);
-                state.remember(self.options.tolerance.max(FEASIBLE));
+                state.remember(self.options.tolerance);
                 Ok((state, None))
             }
         }
@@ -307,12 +262,8 @@ impl Sqp {
 
     /// Names the end of a run that cannot go on.
     fn give_up(&self, state: SqpState) -> SqpState {
-        let (kkt, violation) = state
-            .incumbent
-            .as_ref()
-            .map_or((f64::INFINITY, f64::INFINITY), |b| (b.kkt, b.values.violation()));
-        let close = kkt <= CLOSE.max(10.0 * self.options.tolerance) && violation <= CLOSE;
-        state.end(if close { Outcome::AlmostConverged } else { Outcome::NoProgress })
+        let outcome = Incumbent::give_up(state.incumbent.as_ref(), self.options.tolerance);
+        state.end(outcome)
     }
 }
 

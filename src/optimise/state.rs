@@ -1,5 +1,6 @@
 //! What the optimiser knows: iterate, model, multipliers, incumbent, history.
 
+use super::minimum::Incumbent;
 use super::{Outcome, Slopes, Values};
 use crate::run::IterationEvent;
 use argmin::core::{Problem, State, TerminationReason, TerminationStatus};
@@ -31,16 +32,6 @@ pub(super) struct Iterate {
     pub x: Vec<f64>,
     pub values: Values,
     pub slopes: Slopes,
-}
-
-/// The best point so far.
-#[derive(Debug, Clone)]
-pub(super) struct Incumbent {
-    pub x: Vec<f64>,
-    pub values: Values,
-    /// Known once the sub-problem there is solved.
-    pub kkt: f64,
-    pub multipliers: Multipliers,
 }
 
 /// State of an SQP run; scaled variables inside. argmin's own notion of "best" looks at the cost alone, so the incumbent is
@@ -118,15 +109,10 @@ impl SqpState {
         }
     }
 
-    /// Keeps the better of the incumbent and the iterate: smaller violation above `feasible`, then smaller objective.
-    pub(super) fn remember(&mut self, feasible: f64) {
-        let Some(now) = &self.iterate else { return };
-        let rank = |v: &Values| (v.violation().max(feasible), v.objective);
-        let better = self.incumbent.as_ref().is_none_or(|best| rank(&now.values) < rank(&best.values));
-        if better {
-            let (x, values) = (now.x.clone(), now.values.clone());
-            self.incumbent =
-                Some(Incumbent { x, values, kkt: f64::INFINITY, multipliers: Multipliers::default() });
+    /// Keeps the better of the incumbent and the iterate.
+    pub(super) fn remember(&mut self, tolerance: f64) {
+        if let Some(now) = &self.iterate {
+            Incumbent::keep_better(&mut self.incumbent, &now.x, &now.values, tolerance);
         }
     }
 
@@ -135,9 +121,13 @@ impl SqpState {
         let Some(now) = &self.iterate else { return };
         let same = self.incumbent.as_ref().is_some_and(|best| best.x == now.x);
         if same || converged {
-            let (x, values) = (now.x.clone(), now.values.clone());
-            self.incumbent =
-                Some(Incumbent { x, values, kkt: self.kkt, multipliers: self.multipliers.clone() });
+            self.incumbent = Some(Incumbent {
+                x: now.x.clone(),
+                values: now.values.clone(),
+                kkt: self.kkt,
+                combined: self.combined,
+                multipliers: self.multipliers.clone(),
+            });
         }
     }
 }

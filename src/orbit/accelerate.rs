@@ -170,6 +170,7 @@ impl<M: LinearisedDae> Accelerator<M> {
             let k = (n + count - 1 - back) % count;
             march.memories[k].copy_from_slice(&march.last[back]);
         }
+        march.forget_move();
         self.kept = 0;
         self.corrections += 1;
     }
@@ -185,6 +186,7 @@ impl<M: LinearisedDae> Accelerator<M> {
         march.last = before.last;
         march.replaced = before.replaced;
         march.taken = before.taken;
+        march.forget_move();
         self.stop();
         true
     }

@@ -186,6 +186,11 @@ impl<'m, M: LinearisedDae> March<'m, M> {
         self.change.extend(self.states[n].iter().zip(&self.stood).map(|(z, old)| z - old));
     }
 
+    /// States were changed by other means than a step: what the last step changed says nothing about the next.
+    pub fn forget_move(&mut self) {
+        self.stood.clear();
+    }
+
     /// The state of the pass before, moved like the step before, or the last step continued.
     fn guess(&mut self, n: usize) -> Vec<f64> {
         let count = self.options.steps;

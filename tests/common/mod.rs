@@ -44,6 +44,36 @@ fn changed_study(path: &str, changes: &[(&str, &str)]) -> Study {
         .unwrap_or_else(|e| panic!("{e}: {:#?}", e.faults))
 }
 
+/// A study of this repository in a folder of its own, with its data, each change made once.
+pub fn copied_study(folder: &Path, of: &str, changes: &[(&str, &str)]) -> PathBuf {
+    let mut text = std::fs::read_to_string(here(of)).unwrap();
+    for (from, to) in changes {
+        assert!(text.contains(from), "the study does not contain {from:?}");
+        text = text.replacen(from, to, 1);
+    }
+    std::fs::create_dir_all(folder.join("data")).unwrap();
+    let data = "data/engine_pressure_170x215_digitised.csv";
+    std::fs::copy(here("studies").join(data), folder.join(data)).unwrap();
+    let path = folder.join("study.toml");
+    std::fs::write(&path, merged(&text)).unwrap();
+    path
+}
+
+/// Holds the example on the page of a module against the lines of the test that runs it.
+pub fn assert_example(test: &str, page: &str, least_lines: usize) {
+    let between = |text: &str, from: &str, to: &str| -> String {
+        let lines = text.lines().skip_while(|l| *l != from).skip(1);
+        lines.take_while(|l| *l != to).map(|l| format!("{l}\n")).collect()
+    };
+    let tested = std::fs::read_to_string(here(test)).unwrap();
+    let tested = between(&tested, "// The example begins here.", "// The example ends here.");
+    let text = std::fs::read_to_string(here(page)).unwrap();
+    let lines = text.lines().map_while(|l| l.strip_prefix("//!"));
+    let shown: String = lines.map(|l| format!("{}\n", l.strip_prefix(' ').unwrap_or(l))).collect();
+    let shown = between(&shown, "```no_run", "```");
+    assert!(tested.lines().count() > least_lines && tested == shown, "copy the example to {page}:\n{tested}");
+}
+
 /// The text with every section that stands twice put together; later keys replace earlier ones.
 pub fn merged(text: &str) -> String {
     let mut sections: Vec<(String, Vec<String>)> = vec![(String::new(), Vec::new())];

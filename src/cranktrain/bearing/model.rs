@@ -257,7 +257,7 @@ impl LinearisedDae for JournalBearing {
         room: &mut BearingRoom,
         into: &mut BearingFactors,
     ) -> Result<(), Singular> {
-        self.evaluate(step, memory, residual, room);
+        self.balance(step, memory, residual, room);
         self.enter(step.t_s, step.alpha, &mut room.linear, into);
         into.system.factor(&room.linear.stencil)
     }
@@ -270,13 +270,24 @@ impl LinearisedDae for JournalBearing {
         room: &mut BearingRoom,
         into: &mut BearingFactors,
     ) -> Result<(), Singular> {
-        self.evaluate(step, memory, residual, room);
+        self.balance(step, memory, residual, room);
         self.enter(step.t_s, step.alpha, &mut room.linear, into);
         into.system.factor_and_solve(&room.linear.stencil, residual)
     }
 
     fn balance(&self, step: Step, memory: &mut [f64], residual: &mut [f64], room: &mut BearingRoom) {
-        self.evaluate(step, memory, residual, room);
+        let (l, n) = (self.layout, self.layout.n);
+        memory[n..n + 2].copy_from_slice(&self.pair(step.z, 0));
+        if l.mass {
+            memory[n + 2..].copy_from_slice(&self.pair(step.z, 1));
+        }
+        let mut rates = [0.0; 4];
+        (0..l.remembered()).for_each(|k| rates[k] = step.alpha * memory[n + k] + step.past[n + k]);
+        let velocity = [rates[0], rates[1]];
+        self.linearise_film(step.t_s, step.z, velocity, (step.alpha, step.past), room);
+        memory[..n].copy_from_slice(&room.linear.content);
+        residual[..n].copy_from_slice(&room.linear.residual);
+        self.border_residual(step.t_s, step.z, &rates, &room.linear.loads, &mut residual[n..]);
     }
 
     fn solve(&self, factors: &BearingFactors, rhs: &mut [f64]) {
@@ -350,22 +361,6 @@ impl LinearisedDae for JournalBearing {
 }
 
 impl JournalBearing {
-    /// Memory and residual of a step; the film stays linearised there.
-    fn evaluate(&self, step: Step, memory: &mut [f64], residual: &mut [f64], room: &mut BearingRoom) {
-        let (l, n) = (self.layout, self.layout.n);
-        memory[n..n + 2].copy_from_slice(&self.pair(step.z, 0));
-        if l.mass {
-            memory[n + 2..].copy_from_slice(&self.pair(step.z, 1));
-        }
-        let mut rates = [0.0; 4];
-        (0..l.remembered()).for_each(|k| rates[k] = step.alpha * memory[n + k] + step.past[n + k]);
-        let velocity = [rates[0], rates[1]];
-        self.linearise_film(step.t_s, step.z, velocity, (step.alpha, step.past), room);
-        memory[..n].copy_from_slice(&room.linear.content);
-        residual[..n].copy_from_slice(&room.linear.residual);
-        self.border_residual(step.t_s, step.z, &rates, &room.linear.loads, &mut residual[n..]);
-    }
-
     /// Linearises the film for the rate `alpha c + past`.
     pub(super) fn linearise_film(
         &self,

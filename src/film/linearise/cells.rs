@@ -133,7 +133,7 @@ impl Cells {
     fn set_rough(&mut self, film: &Reynolds, s: &Scalars) {
         let mut cell = Cell::<2>::default();
         for k in 0..self.gap.len() {
-            cell.set(film, s, self.gap[k], self.pressure[k] + film.cavitation_pressure_pa, true);
+            cell.set(film, s, self.gap[k], self.pressure[k] + film.cavitation_pressure_pa, false);
             let slope = self.pressure_slope[k];
             self.around.set(k, &cell.around, slope);
             self.across.set(k, &cell.across, slope);

@@ -22,13 +22,6 @@ impl Stencil {
         Self { diagonal: z(), west: z(), east: z(), south: z(), north: z() }
     }
 
-    /// Sets every coefficient to zero.
-    pub fn clear(&mut self) {
-        for part in [&mut self.diagonal, &mut self.west, &mut self.east, &mut self.south, &mut self.north] {
-            part.fill(0.0);
-        }
-    }
-
     /// Makes row `k` say `scale * x_k = rhs_k`.
     pub fn decouple(&mut self, k: usize, scale: f64) {
         self.diagonal[k] = scale;
