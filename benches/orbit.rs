@@ -5,6 +5,9 @@
 //! Target: at most 4, and at least 60 % of the time in the linear solver. A step takes two to three Newton iterations.
 //! Most assemble the film, factorise it and solve for three right-hand sides (residual and two motions) in one go; the last is
 //! often a chord step, which assembles and solves for one with the factors there are.
+//!
+//! Profile, as found by this bench (last column: share of the factorisations and solves, measured on hot matrices, so a lower
+//! limit): 54 % on 60 x 6, 53 % on 72 x 8, 73 % on 85 x 20, 61 % on 120 x 20; the rest is the film's arrays (cells, faces, rows).
 
 mod common;
 
