@@ -11,7 +11,7 @@
 use super::kkt::kkt_residual;
 use super::qp::{Qp, QpSolution};
 use super::state::Iterate;
-use super::{Multipliers, Slopes, Values};
+use super::{LinearConstraint, Multipliers, Slopes, Values};
 use nalgebra::DMatrix;
 
 /// Points whose gradients are kept.
@@ -22,8 +22,8 @@ pub(super) fn solve(
     now: &Iterate,
     near: &[&Iterate],
     hessian: &DMatrix<f64>,
-    lower: &[f64],
-    upper: &[f64],
+    linear: &[LinearConstraint],
+    (lower, upper): (&[f64], &[f64]),
 ) -> Option<(QpSolution, f64)> {
     let (n, m) = (now.x.len(), now.values.inequalities.len());
     let all: Vec<&Slopes> = std::iter::once(&now.slopes).chain(near.iter().map(|i| &i.slopes)).collect();
@@ -43,8 +43,11 @@ pub(super) fn solve(
     }
     let wide = hessian.clone().resize(n + 1, n + 1, 0.0);
     let (lower, upper) = (wider(lower, f64::NEG_INFINITY), wider(upper, f64::INFINITY));
-    let found =
-        Qp { hessian: &wide, values: &values, slopes: &slopes, lower: &lower, upper: &upper }.solve()?;
+    let wider_row = |r: &LinearConstraint| LinearConstraint { factors: wider(&r.factors, 0.0), ..r.clone() };
+    let rows: Vec<LinearConstraint> = linear.iter().map(wider_row).collect();
+    let model =
+        Qp { hessian: &wide, values: &values, slopes: &slopes, linear: &rows, lower: &lower, upper: &upper };
+    let found = model.solve()?;
     let multipliers = &found.multipliers.inequalities;
     let (mut combined, mut prices) = (vec![0.0; n], vec![0.0; m]);
     for (s, shares) in all.iter().zip(multipliers.chunks_exact(m + 1)) {
@@ -62,6 +65,7 @@ pub(super) fn solve(
             equalities: found.multipliers.equalities.clone(),
             lower: cut(&found.multipliers.lower),
             upper: cut(&found.multipliers.upper),
+            linear: found.multipliers.linear.clone(),
         },
         elastic: found.elastic,
     };
@@ -69,6 +73,6 @@ pub(super) fn solve(
     let zero = vec![vec![0.0; n]; m];
     let combination =
         Slopes { objective: combined, inequalities: zero, equalities: now.slopes.equalities.clone() };
-    let residual = kkt_residual(&now.values, &combination, &solution);
+    let residual = kkt_residual(&now.values, &combination, linear, &solution);
     Some((solution, residual))
 }

@@ -63,6 +63,8 @@ pub fn curvature<P: ConstrainedProblem + ?Sized>(
     let mut rows: Vec<Vec<f64>> = slopes.equalities.clone();
     let active = slopes.inequalities.iter().zip(&multipliers.inequalities);
     rows.extend(active.filter(|(_, l)| **l > ACTIVE * largest).map(|(g, _)| g.clone()));
+    let held = scaled.linear.iter().filter(|r| r.excess(&s).abs() < AT_BOUND);
+    rows.extend(held.map(|r| r.factors.clone()));
     for (j, v) in s.iter().enumerate() {
         if v - scaled.lower[j] < AT_BOUND || scaled.upper[j] - v < AT_BOUND {
             rows.push((0..s.len()).map(|k| f64::from(u8::from(k == j))).collect());
@@ -168,6 +170,7 @@ mod tests {
             equalities: Vec::new(),
             lower: vec![0.0; 3],
             upper: vec![0.0; 3],
+            linear: Vec::new(),
         }
     }
 

@@ -112,7 +112,7 @@ impl Sqp {
             inequalities: shifted(&now.slopes.inequalities, &there.inequalities),
             equalities: shifted(&now.slopes.equalities, &there.equalities),
         };
-        let Some(again) = self.sub_problem(problem, now, &state.hessian, &values, state.radius) else {
+        let Some(again) = self.sub_problem(problem, now, state.model.matrix(), &values, state.radius) else {
             return Ok(None);
         };
         let x = moved(problem, &now.x, &again.step, 1.0);

@@ -3,9 +3,12 @@
 //! [`Method::Sqp`] is what the others are measured against: the augmented Lagrangian needs several times its simulations but no
 //! model of the constraints' curvature, COBYLA needs no gradients at all, which is for objectives with noise.
 
+use super::linear::Softened;
 use super::minimum::Minimum;
 use super::sqp::{SqpOptions, minimise};
-use super::{ConstrainedProblem, EvaluationError, Outcome, Slopes, Values, cobyla, lagrangian};
+use super::{
+    ConstrainedProblem, EvaluationError, LinearConstraint, Outcome, Slopes, Values, cobyla, lagrangian,
+};
 use crate::run::IterationEvent;
 use argmin::core::Error;
 use serde::{Deserialize, Serialize};
@@ -72,10 +75,17 @@ pub fn search<P: ConstrainedProblem + ?Sized>(
         asked: AtomicU64::new(0),
         spent: AtomicBool::new(false),
     };
+    let softened = || Softened::new(&watched, start);
     let mut end = match options.method {
         Method::Sqp => minimise(&watched, start, options.settings)?,
-        Method::AugmentedLagrangian => lagrangian::minimise(&watched, start, options.settings),
-        Method::Cobyla => cobyla::minimise(&watched, start, options.settings),
+        Method::AugmentedLagrangian => {
+            let problem = softened();
+            problem.restored(lagrangian::minimise(&problem, start, options.settings))
+        }
+        Method::Cobyla => {
+            let problem = softened();
+            problem.restored(cobyla::minimise(&problem, start, options.settings))
+        }
     };
     if end.outcome == Outcome::Cancelled && watched.spent.into_inner() {
         end.outcome = Outcome::BudgetSpent;
@@ -109,6 +119,10 @@ impl<P: ConstrainedProblem + ?Sized> ConstrainedProblem for Watched<'_, P> {
 
     fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
         self.problem.slopes(x)
+    }
+
+    fn linear(&self) -> Vec<LinearConstraint> {
+        self.problem.linear()
     }
 
     fn accepted(&self, news: &IterationEvent) {

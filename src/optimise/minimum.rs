@@ -75,6 +75,12 @@ pub(super) struct Ended {
 }
 
 impl Ended {
+    /// A search that ends before it began.
+    pub fn at_start(outcome: Outcome, start: Vec<f64>, reason: &str) -> Self {
+        let failures = vec![reason.to_owned()];
+        Self { outcome, best: None, start, history: Vec::new(), failures, evaluations: 0, gradients: 0 }
+    }
+
     /// The same in true variables.
     pub fn restored<P: ConstrainedProblem + ?Sized>(self, scaled: &Scaled<'_, P>) -> Minimum {
         let scale = scaled.objective_scale;
@@ -92,6 +98,7 @@ impl Ended {
                 equalities: restore(m.equalities),
                 lower: restore(m.lower),
                 upper: restore(m.upper),
+                linear: scaled.linear_prices(&m.linear),
             },
             kkt,
             combined,

@@ -1,7 +1,7 @@
 //! Which design next: constrained optimisation driven by exact gradients.
 //!
 //! ```text
-//! minimise f(x)   subject to   c(x) <= 0,   g(x) = 0,   lower <= x <= upper
+//! minimise f(x)   subject to   c(x) <= 0,   g(x) = 0,   A x <= b,   lower <= x <= upper
 //! ```
 //!
 //! [`Sqp`] is an argmin solver (sequential quadratic programming, Nocedal and Wright 2006, ch. 18) whose sub-problem
@@ -71,11 +71,15 @@ mod descent;
 mod design;
 mod kkt;
 mod lagrangian;
+mod linear;
+#[cfg(test)]
+mod linear_tests;
 mod methods;
 mod minimum;
 mod outcome;
 mod problem;
 mod qp;
+mod quasi_newton;
 mod record;
 mod sqp;
 #[cfg(test)]
@@ -85,6 +89,7 @@ mod state;
 
 pub use curvature::{Curvature, curvature};
 pub use design::{Case, DesignProblem, Evaluated, Limit, Sense};
+pub use linear::{LinearConstraint, Relation};
 pub use methods::{Budget, Method, SearchOptions, search};
 pub use minimum::Minimum;
 pub use outcome::Outcome;

@@ -1,5 +1,6 @@
 //! The abilities a problem needs to be optimised, and its form in scaled variables.
 
+use super::LinearConstraint;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -58,6 +59,10 @@ pub trait ConstrainedProblem {
     fn values(&self, x: &[f64]) -> Result<Values, EvaluationError>;
     /// Their gradients at `x`, asked only at points whose values were accepted.
     fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError>;
+    /// Constraints that are linear in the variables; none by default.
+    fn linear(&self) -> Vec<LinearConstraint> {
+        Vec::new()
+    }
     /// Called at every accepted point.
     fn accepted(&self, _news: &crate::run::IterationEvent) {}
 }
@@ -70,18 +75,32 @@ pub(super) struct Scaled<'p, P: ?Sized> {
     pub lower: Vec<f64>,
     pub upper: Vec<f64>,
     pub objective_scale: f64,
+    /// Linear constraints, the largest factor of each one.
+    pub linear: Vec<LinearConstraint>,
+}
+
+/// Size of each variable: the width of its box, or what it starts from.
+pub(super) fn widths<P: ConstrainedProblem + ?Sized>(problem: &P, start: &[f64]) -> Vec<f64> {
+    let (low, high) = problem.bounds();
+    let of = |j: usize| if boxed(low[j], high[j]) { high[j] - low[j] } else { start[j].abs().max(1.0) };
+    (0..start.len()).map(of).collect()
+}
+
+fn boxed(low: f64, high: f64) -> bool {
+    low.is_finite() && high.is_finite() && high > low
 }
 
 impl<'p, P: ConstrainedProblem + ?Sized> Scaled<'p, P> {
     pub fn new(problem: &'p P, start: &[f64]) -> Self {
         let (low, high) = problem.bounds();
-        let boxed = |j: usize| low[j].is_finite() && high[j].is_finite() && high[j] > low[j];
         let n = start.len();
-        let width: Vec<f64> =
-            (0..n).map(|j| if boxed(j) { high[j] - low[j] } else { start[j].abs().max(1.0) }).collect();
-        let origin: Vec<f64> = (0..n).map(|j| if boxed(j) { low[j] } else { start[j] }).collect();
+        let width = widths(problem, start);
+        let origin: Vec<f64> =
+            (0..n).map(|j| if boxed(low[j], high[j]) { low[j] } else { start[j] }).collect();
         let scale = |v: &[f64]| (0..n).map(|j| (v[j] - origin[j]) / width[j]).collect();
-        Self { lower: scale(&low), upper: scale(&high), problem, origin, width, objective_scale: 1.0 }
+        let (lower, upper) = (scale(&low), scale(&high));
+        let linear = problem.linear().iter().map(|r| r.scaled(&origin, &width)).collect();
+        Self { lower, upper, problem, origin, width, objective_scale: 1.0, linear }
     }
 
     /// Divides the objective by its size at a point; one that happens to vanish there has no size to scale by.
@@ -100,6 +119,17 @@ impl<'p, P: ConstrainedProblem + ?Sized> Scaled<'p, P> {
     pub fn to_true(&self, s: &[f64]) -> Vec<f64> {
         let (low, high) = self.problem.bounds();
         (0..s.len()).map(|j| (self.origin[j] + s[j] * self.width[j]).clamp(low[j], high[j])).collect()
+    }
+
+    /// The linear constraints for steps from a point.
+    pub fn linear_from(&self, s: &[f64]) -> Vec<LinearConstraint> {
+        self.linear.iter().map(|r| r.from(s)).collect()
+    }
+
+    /// Prices of linear constraints per unit of their own bound.
+    pub fn linear_prices(&self, multipliers: &[f64]) -> Vec<f64> {
+        let rows = self.problem.linear();
+        rows.iter().zip(multipliers).map(|(r, m)| m * self.objective_scale / r.size(&self.width)).collect()
     }
 
     pub fn values(&self, s: &[f64]) -> Result<Values, EvaluationError> {

@@ -1,13 +1,14 @@
 //! The quadratic sub-problem, solved by Clarabel.
 //!
 //! ```text
-//! minimise 1/2 d'B d + f'd   subject to   c + C d <= 0,   g + G d = 0,   lower <= d <= upper
+//! minimise 1/2 d'B d + f'd   subject to   c + C d <= 0,   g + G d = 0,   A d <= b or = b,   lower <= d <= upper
 //! ```
 //!
 //! If the linearised constraints contradict each other, the elastic form lets each be missed at a price: slack `t >= 0`
-//! with `penalty * sum t` in the objective. It always has a solution.
+//! with `penalty * sum t` in the objective. Constraints that are linear in the variables (`A`) have no slack: the point meets them, so
+//! a solution always exists.
 
-use super::{Multipliers, Slopes, Values};
+use super::{LinearConstraint, Multipliers, Relation, Slopes, Values};
 use crate::math::dot;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
@@ -32,6 +33,8 @@ pub(super) struct Qp<'a> {
     pub hessian: &'a DMatrix<f64>,
     pub values: &'a Values,
     pub slopes: &'a Slopes,
+    /// Constraints that are linear in the variables, for steps from the point.
+    pub linear: &'a [LinearConstraint],
     /// Bounds of the step.
     pub lower: &'a [f64],
     pub upper: &'a [f64],
@@ -70,13 +73,15 @@ impl Qp<'_> {
         let slacks = if elastic { mi + 2 * me } else { 0 };
         let rows = self.rows(elastic);
         let a = CscMatrix::new_from_triplets(rows.b.len(), n + slacks, rows.i, rows.j, rows.v);
-        let cones = [SupportedConeT::ZeroConeT(me), SupportedConeT::NonnegativeConeT(rows.b.len() - me)];
+        let zero = me + self.fixed(Relation::Equal).count();
+        let cones = [SupportedConeT::ZeroConeT(zero), SupportedConeT::NonnegativeConeT(rows.b.len() - zero)];
         let mut q = self.slopes.objective.clone();
         q.resize(n + slacks, ELASTIC_PRICE);
         let settings = DefaultSettings {
             verbose: false,
             max_iter: 100,
             max_threads: 1,
+            direct_solve_method: "faer".to_owned(),
             presolve_enable: false,
             tol_gap_abs: TOLERANCE,
             tol_gap_rel: TOLERANCE,
@@ -113,7 +118,12 @@ impl Qp<'_> {
         CscMatrix::new_from_triplets(n + slacks, n + slacks, i, j, v)
     }
 
-    /// Equalities, inequalities, finite lower bounds, finite upper bounds, signs of the slacks.
+    /// Linear constraints of one kind.
+    fn fixed(&self, relation: Relation) -> impl Iterator<Item = &LinearConstraint> {
+        self.linear.iter().filter(move |r| r.relation == relation)
+    }
+
+    /// Equalities, linear ones, inequalities, linear ones, finite lower bounds, finite upper bounds, signs of the slacks.
     fn rows(&self, elastic: bool) -> Rows {
         let n = self.lower.len();
         let (me, mi) = (self.values.equalities.len(), self.values.inequalities.len());
@@ -123,9 +133,14 @@ impl Qp<'_> {
             let extra = slack(mi + 2 * k, -1.0).into_iter().chain(slack(mi + 2 * k + 1, 1.0));
             rows.push(g.iter().copied().enumerate().chain(extra), -value);
         }
+        let fixed = |rows: &mut Rows, relation: Relation| {
+            self.fixed(relation).for_each(|r| rows.push(r.factors.iter().copied().enumerate(), r.bound));
+        };
+        fixed(&mut rows, Relation::Equal);
         for (k, (c, value)) in self.slopes.inequalities.iter().zip(&self.values.inequalities).enumerate() {
             rows.push(c.iter().copied().enumerate().chain(slack(k, -1.0)), -value);
         }
+        fixed(&mut rows, Relation::AtMost);
         for (j, low) in self.lower.iter().enumerate().filter(|(_, v)| v.is_finite()) {
             rows.push([(j, -1.0)], -low);
         }
@@ -139,27 +154,24 @@ impl Qp<'_> {
     }
 
     fn multipliers(&self, z: &[f64]) -> Multipliers {
-        let (n, me) = (self.lower.len(), self.values.equalities.len());
-        let mi = self.values.inequalities.len();
-        let mut at = me + mi;
-        let mut next = |bounds: &[f64]| -> Vec<f64> {
-            (0..n)
-                .map(|j| {
-                    if !bounds[j].is_finite() {
-                        return 0.0;
-                    }
-                    at += 1;
-                    z[at - 1].max(0.0)
-                })
-                .collect()
+        let mut rest = z.iter().copied();
+        let mut next = |count: usize| -> Vec<f64> { rest.by_ref().take(count).collect() };
+        let above = |v: Vec<f64>| -> Vec<f64> { v.into_iter().map(|z| z.max(0.0)).collect() };
+        let equalities = next(self.values.equalities.len());
+        let mut equal = next(self.fixed(Relation::Equal).count()).into_iter();
+        let inequalities = above(next(self.values.inequalities.len()));
+        let mut at_most = above(next(self.fixed(Relation::AtMost).count())).into_iter();
+        let linear = self.linear.iter().filter_map(|r| match r.relation {
+            Relation::Equal => equal.next(),
+            Relation::AtMost => at_most.next(),
+        });
+        let linear = linear.collect();
+        let mut of_bounds = |bounds: &[f64]| -> Vec<f64> {
+            let one = |b: &f64| if b.is_finite() { next(1).first().map_or(0.0, |z| z.max(0.0)) } else { 0.0 };
+            bounds.iter().map(one).collect()
         };
-        let (lower, upper) = (next(self.lower), next(self.upper));
-        Multipliers {
-            equalities: z[..me].to_vec(),
-            inequalities: z[me..me + mi].iter().map(|z| z.max(0.0)).collect(),
-            lower,
-            upper,
-        }
+        let (lower, upper) = (of_bounds(self.lower), of_bounds(self.upper));
+        Multipliers { inequalities, equalities, lower, upper, linear }
     }
 
     /// Largest violation of the linearised constraints after a step.
@@ -168,7 +180,11 @@ impl Qp<'_> {
         let inequalities = self.slopes.inequalities.iter().zip(&self.values.inequalities);
         let equalities = self.slopes.equalities.iter().zip(&self.values.equalities);
         let above = inequalities.fold(0.0f64, |a, (row, v)| a.max(after(row, *v)));
-        equalities.fold(above, |a, (row, v)| a.max(after(row, *v).abs()))
+        let above = equalities.fold(above, |a, (row, v)| a.max(after(row, *v).abs()));
+        self.linear.iter().fold(above, |a, r| {
+            let excess = r.excess(step);
+            a.max(if r.relation == Relation::Equal { excess.abs() } else { excess })
+        })
     }
 }
 
@@ -184,9 +200,8 @@ mod tests {
             equalities: vec![],
         };
         let hessian = DMatrix::identity(2, 2);
-        Qp { hessian: &hessian, values: &values, slopes: &slopes, lower: &[-10.0; 2], upper: &[10.0; 2] }
-            .solve()
-            .unwrap()
+        let (lower, upper) = (&[-10.0; 2], &[10.0; 2]);
+        Qp { hessian: &hessian, values: &values, slopes: &slopes, linear: &[], lower, upper }.solve().unwrap()
     }
 
     #[test]

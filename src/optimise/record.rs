@@ -74,9 +74,9 @@ impl<'p, P: ConstrainedProblem + ?Sized> Record<'p, P> {
         let room = |bound: &[f64]| -> Vec<f64> { bound.iter().zip(s).map(|(b, s)| b - s).collect() };
         let (hessian, lower, upper) =
             (DMatrix::identity(n, n), room(&self.scaled.lower), room(&self.scaled.upper));
-        let model = Qp { hessian: &hessian, values, slopes, lower: &lower, upper: &upper };
+        let model = Qp { hessian: &hessian, values, slopes, linear: &[], lower: &lower, upper: &upper };
         let Some(found) = model.solve() else { return f64::INFINITY };
-        let kkt = kkt_residual(values, slopes, &found);
+        let kkt = kkt_residual(values, slopes, &[], &found);
         let same = self.best.as_ref().is_some_and(|b| b.x == s);
         if same || kkt <= self.options.tolerance {
             let (x, values) = (s.to_vec(), values.clone());

@@ -4,16 +4,18 @@
 //! `f + sum mu max(c, 0) + sum mu |g|`, where each weight `mu` follows the multiplier of its constraint up at once and down by halves
 //! (Powell 1978); if the full step is refused because the constraints curve, it is corrected once with
 //! their values there. A point that cannot be evaluated counts as a refused trial: the step is halved. Gradients are asked
-//! at accepted points only. The Hessian follows Powell's damped BFGS update (1978) and starts from the scaled unit matrix.
+//! at accepted points only. The Hessian is [`super::quasi_newton`]'s.
 //!
 //! The KKT residual is the largest of `|grad L|`, `|lambda c|` and the violation, in scaled variables and with the
 //! objective divided by its start value.
 
 use super::bundle;
 use super::kkt::{kkt_residual, lagrangian};
+use super::linear::nearest;
 use super::minimum::{Ended, Incumbent, Minimum};
 use super::problem::Scaled;
 use super::qp::{Qp, QpSolution};
+use super::quasi_newton::QuasiNewton;
 use super::state::Iterate;
 use super::{ConstrainedProblem, EvaluationError, Outcome, Slopes, SqpState, Values};
 use crate::run::IterationEvent;
@@ -25,11 +27,6 @@ const STILL: f64 = 1e-9;
 const STALLED: u32 = 3;
 /// A KKT residual that does not fall below this share of the one before has come to a halt, perhaps at a kink.
 const STAGNANT: f64 = 0.7;
-/// A change of the gradient over a step this short that is this many times as large is the jump at a kink, no curvature.
-const SHORT: f64 = 1e-5;
-const STEEP: f64 = 1e5;
-/// Powell's damping.
-const DAMPING: f64 = 0.2;
 
 /// Settings of the optimiser.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,6 +70,10 @@ pub fn minimise<P: ConstrainedProblem + ?Sized>(
 ) -> Result<Minimum, Error> {
     let mut scaled = Scaled::new(problem, start);
     let s = scaled.to_scaled(start);
+    let Some(s) = nearest(&s, &scaled.linear, &scaled.lower, &scaled.upper) else {
+        let reason = "the linear constraints and the bounds contradict each other";
+        return Ok(Ended::at_start(Outcome::Infeasible, s, reason).restored(&scaled));
+    };
     // A start that cannot be evaluated is told by the search itself.
     let _ = scaled.scale_objective(&s);
     let result = Executor::new(Operator { scaled }, Sqp::new(options))
@@ -105,9 +106,9 @@ fn settle_last<P: ConstrainedProblem + ?Sized>(
     state: &mut SqpState,
 ) {
     let Some(now) = state.iterate.clone().filter(|_| state.outcome.is_none()) else { return };
-    let qp = Sqp::new(options).sub_problem(problem, &now, &state.hessian, &now.values, state.radius);
+    let qp = Sqp::new(options).sub_problem(problem, &now, state.model.matrix(), &now.values, state.radius);
     if let Some(qp) = qp {
-        (state.kkt, state.combined) = (kkt_residual(&now.values, &now.slopes, &qp), 1);
+        (state.kkt, state.combined) = (residual(problem, &now, &qp), 1);
         state.multipliers = qp.multipliers;
         report(problem, state, &now);
         state.judge(state.kkt <= options.tolerance);
@@ -127,8 +128,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
         mut state: SqpState,
     ) -> Result<(SqpState, Option<KV>), Error> {
         let x = state.start_point().ok_or_else(|| Error::msg("no start"))?.to_vec();
-        let n = x.len();
-        state.hessian = DMatrix::identity(n, n);
+        state.model = QuasiNewton::new(x.len());
         state.radius = self.options.step_limit;
         let values = match evaluate(problem, &x) {
             Ok(values) => values,
@@ -148,10 +148,11 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
         mut state: SqpState,
     ) -> Result<(SqpState, Option<KV>), Error> {
         let Some(now) = state.iterate.clone() else { return Ok((state.end(Outcome::StartFailed), None)) };
-        let Some(qp) = self.sub_problem(problem, &now, &state.hessian, &now.values, state.radius) else {
+        let Some(qp) = self.sub_problem(problem, &now, state.model.matrix(), &now.values, state.radius)
+        else {
             return Ok((self.give_up(state), None));
         };
-        state.kkt = kkt_residual(&now.values, &now.slopes, &qp);
+        state.kkt = residual(problem, &now, &qp);
         state.combined = 1;
         let stagnant = state.kkt > STAGNANT * state.last_kkt;
         state.last_kkt = state.kkt;
@@ -174,10 +175,9 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
         state.weigh(&qp.multipliers);
         match self.accept(problem, &mut state, &now, &qp) {
             Err(EvaluationError::Cancelled) => Ok((state.end(Outcome::Cancelled), None)),
-            Err(EvaluationError::Failed(_)) if !state.fresh_hessian => {
+            Err(EvaluationError::Failed(_)) if !state.model.is_fresh() => {
                 // The curvature may be stale: try once more along the steepest descent.
-                state.hessian.fill_with_identity();
-                state.fresh_hessian = true;
+                state.model.restart();
                 Ok((state, None))
             }
             Err(EvaluationError::Failed(_)) => Ok((self.give_up(state), None)),
@@ -187,7 +187,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Solver<Operator<'p, P>, SqpState> for S
             }
             Ok(Some(next)) => {
                 state.nulls = 0;
-                update_hessian(&mut state, &now, &next);
+                update_model(&mut state, &now, &next);
                 let full = size >= 0.99 * state.radius;
                 state.last_step = next.x.iter().zip(&now.x).fold(0.0, |a, (b, c)| a.max((b - c).abs()));
                 // A whole step to the limit that was taken at once asks for a longer one.
@@ -226,7 +226,8 @@ impl Sqp {
     ) -> Option<QpSolution> {
         let scaled = &problem.problem.as_ref()?.scaled;
         let (lower, upper) = self.room(&now.x, scaled, radius);
-        Qp { hessian, values, slopes: &now.slopes, lower: &lower, upper: &upper }.solve()
+        let linear = &scaled.linear_from(&now.x);
+        Qp { hessian, values, slopes: &now.slopes, linear, lower: &lower, upper: &upper }.solve()
     }
 
     /// The sub-problem with all gradients met within the tolerance of the point, if there are several: at a kink no single one says
@@ -245,7 +246,8 @@ impl Sqp {
         }
         let scaled = &problem.problem.as_ref()?.scaled;
         let (lower, upper) = self.room(&now.x, scaled, state.radius);
-        let (solution, kkt) = bundle::solve(now, &beside, &state.hessian, &lower, &upper)?;
+        let linear = scaled.linear_from(&now.x);
+        let (solution, kkt) = bundle::solve(now, &beside, state.model.matrix(), &linear, (&lower, &upper))?;
         let combined = 1 + beside.len();
         if kkt < state.kkt {
             (state.kkt, state.combined) = (kkt, combined);
@@ -265,6 +267,15 @@ impl Sqp {
         let outcome = Incumbent::give_up(state.incumbent.as_ref(), self.options.tolerance);
         state.end(outcome)
     }
+}
+
+fn residual<P: ConstrainedProblem + ?Sized>(
+    problem: &Problems<'_, P>,
+    now: &Iterate,
+    qp: &QpSolution,
+) -> f64 {
+    let linear = problem.problem.as_ref().map_or_else(Vec::new, |o| o.scaled.linear_from(&now.x));
+    kkt_residual(&now.values, &now.slopes, &linear, qp)
 }
 
 pub(super) fn evaluate<P: ConstrainedProblem + ?Sized>(
@@ -316,26 +327,9 @@ fn report<P: ConstrainedProblem + ?Sized>(problem: &Problems<'_, P>, state: &mut
     state.history.push(news);
 }
 
-/// Damped BFGS update with the change of the Lagrangian's gradient.
-fn update_hessian(state: &mut SqpState, last: &Iterate, next: &Iterate) {
+/// Lets the model of the curvature know the change of the Lagrangian's gradient.
+fn update_model(state: &mut SqpState, last: &Iterate, next: &Iterate) {
     let s = DVector::from_iterator(last.x.len(), next.x.iter().zip(&last.x).map(|(b, a)| b - a));
-    let mut y = lagrangian(&next.slopes, &state.multipliers) - lagrangian(&last.slopes, &state.multipliers);
-    let (ss, sy) = (s.norm_squared(), s.dot(&y));
-    let jump = ss.sqrt() < SHORT && y.norm() > STEEP * ss.sqrt();
-    if ss == 0.0 || jump {
-        return;
-    }
-    if state.fresh_hessian && sy > 0.0 {
-        let n = s.len();
-        state.hessian = DMatrix::identity(n, n) * (y.norm_squared() / sy).clamp(1e-4, 1e4);
-    }
-    state.fresh_hessian = false;
-    let bs = &state.hessian * &s;
-    let sbs = s.dot(&bs);
-    if sy < DAMPING * sbs {
-        let theta = (1.0 - DAMPING) * sbs / (sbs - sy);
-        y = y * theta + &bs * (1.0 - theta);
-    }
-    let sy = s.dot(&y);
-    state.hessian += &y * y.transpose() / sy - &bs * bs.transpose() / sbs;
+    let y = lagrangian(&next.slopes, &state.multipliers) - lagrangian(&last.slopes, &state.multipliers);
+    state.model.update(s, y);
 }

@@ -1,10 +1,10 @@
 //! What the optimiser knows: iterate, model, multipliers, incumbent, history.
 
 use super::minimum::Incumbent;
+use super::quasi_newton::QuasiNewton;
 use super::{Outcome, Slopes, Values};
 use crate::run::IterationEvent;
 use argmin::core::{Problem, State, TerminationReason, TerminationStatus};
-use nalgebra::DMatrix;
 use std::collections::{HashMap, VecDeque};
 use std::time::Duration;
 
@@ -24,6 +24,8 @@ pub struct Multipliers {
     pub lower: Vec<f64>,
     /// Of the upper bounds, at or above zero.
     pub upper: Vec<f64>,
+    /// Of the linear constraints, those with an upper bound at or above zero.
+    pub linear: Vec<f64>,
 }
 
 /// A point with everything known there, in scaled variables.
@@ -44,8 +46,7 @@ pub struct SqpState {
     pub(super) earlier: VecDeque<Iterate>,
     /// Null steps since the last accepted point.
     pub(super) nulls: usize,
-    pub(super) hessian: DMatrix<f64>,
-    pub(super) fresh_hessian: bool,
+    pub(super) model: QuasiNewton,
     pub(super) multipliers: Multipliers,
     /// Weights of the violations in the merit function: inequalities, then equalities.
     pub(super) penalties: Vec<f64>,
@@ -142,8 +143,7 @@ impl State for SqpState {
             incumbent: None,
             earlier: VecDeque::new(),
             nulls: 0,
-            hessian: DMatrix::zeros(0, 0),
-            fresh_hessian: true,
+            model: QuasiNewton::new(0),
             multipliers: Multipliers::default(),
             penalties: Vec::new(),
             radius: f64::INFINITY,
