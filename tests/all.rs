@@ -2,6 +2,7 @@
 
 mod allocations;
 mod architecture;
+mod asked_designs;
 mod bad_studies;
 mod cli;
 mod common;

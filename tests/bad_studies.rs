@@ -97,6 +97,38 @@ fn each_kind_of_mistake_has_its_words() {
     insta::assert_snapshot!(list.join("\n"));
 }
 
+/// Mistakes in what is asked of a search; each stands before `[oil]`.
+const ASKED: &[&str] = &[
+    "[objective]\naggregate = \"worst\"",
+    "[objective]\naggregate = \"worst-case\"\n[robust]\ntolerances = []",
+    "[robust]\nsigmas = -1\nsamples = 3\n[[robust.tolerances]]\nparameter = \"big_end.clearance\"\nstandard_deviation = \"3 um\"",
+    "[[robust.tolerances]]\nparameter = \"oil.inlet_temperature\"\nstandard_deviation = \"3 degC\"",
+    "[[robust.tolerances]]\nparameter = \"big_end.width\"\nstandard_deviation = \"0 mm\"\n[[robust.tolerances]]\nparameter = \"big_end.width\"\nstandard_deviation = \"1 mm\"",
+    "[optimiser]\npolish = true\n[objective]\naggregate = \"worst-case\"",
+    "[[linear_constraints]]\nterms = []\nat_most = \"1 mm\"",
+    "[[linear_constraints]]\nterms = [{ parameter = \"big_end.width\" }, { parameter = \"big_end.depth\", factor = 1 }]\nat_most = \"1 mm\"",
+    "[[linear_constraints]]\nterms = [{ parameter = \"oil.inlet_temperature\", factor = 1 }]\nat_most = \"80 degC\"",
+    "[[linear_constraints]]\nterms = [{ parameter = \"big_end.width\", factor = 1 }]\nat_most = \"80 degC\"",
+    "[[linear_constraints]]\nterms = [{ parameter = \"big_end.width\", factor = 0 }]\nat_most = \"80 mm\"\nat_least = \"1 mm\"",
+    "[[choices]]\nname = \"oil\"\noptions = [{ name = \"one\", set = { \"oil.density_15c\" = \"900 kg/m3\" } }]",
+    "[[choices]]\nname = \"oil\"\noptions = [{ name = \"a\", set = { \"oils.grade\" = \"x\" } }, { name = \"a\", set = { choices = 1 } }, { set = 3 }]",
+    "[[choices]]\nname = \"oil\"\noptions = [{ name = \"good\", set = {} }, { name = \"bad\", set = { \"oil.density_15c\" = 900 } }]",
+];
+
+#[test]
+fn mistakes_in_what_is_asked_have_their_words() {
+    let list: Vec<String> = ASKED
+        .iter()
+        .map(|asked| {
+            let text = main_text().replacen("[oil]\n", &format!("{asked}\n[oil]\n"), 1);
+            let faults = errors(&merged(&text)).faults;
+            let words: Vec<String> = faults.iter().map(|f| format!("{}: {}", f.path, f.message)).collect();
+            format!("{asked}\n    {}", words.join("\n    "))
+        })
+        .collect();
+    insta::assert_snapshot!(list.join("\n"));
+}
+
 /// Mistakes in the keys of oil, supply, roughness, shapes and heat: what is replaced, and by what.
 const PHYSICS: &[(&str, &str)] = &[
     // Oil.

@@ -220,6 +220,7 @@ fn several_starts_and_rivals_are_reported_and_a_budget_is_kept() {
     let run = stribeck().arg("run").arg(&file).arg("--json").arg("--out").arg(&out).assert().success();
     let report: serde_json::Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
     let optima = report["starts"]["optima"].as_array().unwrap();
+    assert_eq!(report["starts"]["same_loss"], optima.len() == 1);
     assert_eq!(optima.iter().map(|o| o["found"].as_u64().unwrap()).sum::<u64>(), 4, "{optima:#?}");
     let best = report["objective"]["optimum"]["total_w"].as_f64().unwrap();
     assert!((optima[0]["loss_w"].as_f64().unwrap() / best - 1.0).abs() < 1e-9);

@@ -79,7 +79,7 @@ fn cancel_on_ctrl_c() -> Cancel {
 }
 
 pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
-    let study = read(&a.file, a.json)?;
+    let study = started(read(&a.file, a.json)?, a.start_from.as_deref())?;
     let name = a.file.file_stem().unwrap_or_default();
     let folder = a.out.clone().unwrap_or_else(|| Path::new("out").join(name));
     std::fs::create_dir_all(&folder).map_err(|e| Stop::File(folder.clone(), e))?;
@@ -110,6 +110,20 @@ pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
         put(&format!("report: {}\n", folder.join("report.html").display()));
     }
     Ok(exit_code(findings.report.outcome.status))
+}
+
+/// The study, from the design of an earlier report if there is one.
+fn started(study: Study, report: Option<&Path>) -> Result<Study, Stop> {
+    let Some(path) = report else { return Ok(study) };
+    let unreadable = |e: String| {
+        let words = format!("cannot be started from: {e}; give the report.json of an earlier 'stribeck run'");
+        Stop::File(path.to_owned(), std::io::Error::other(words))
+    };
+    let text = std::fs::read_to_string(path).map_err(|e| Stop::File(path.to_owned(), e))?;
+    let found: report::Report = serde_json::from_str(&text).map_err(|e| unreadable(e.to_string()))?;
+    let (study, count) = study.started_from(&found).map_err(unreadable)?;
+    eprintln!("starting from {count} parameter values of {}", path.display());
+    Ok(study)
 }
 
 /// Writes and prints a characteristic.

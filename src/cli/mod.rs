@@ -4,6 +4,7 @@
 //! only. Exit codes are part of the interface, see [`exit_code`].
 
 mod commands;
+mod design_tables;
 mod faults;
 mod progress;
 mod proof_tables;
@@ -75,6 +76,9 @@ struct RunArguments {
     /// Folder for report.html, report.json and CSV files [default: out/<name of the study file>].
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
+    /// Start from the design in the report.json of an earlier run, of this study or another with the same parameters.
+    #[arg(long, value_name = "REPORT")]
+    start_from: Option<PathBuf>,
     /// Start over, even if an earlier run of this study was stopped in the same folder; without it, a run goes on from there.
     #[arg(long)]
     fresh: bool,

@@ -1,5 +1,6 @@
 //! Short tables for the terminal.
 
+use super::design_tables::design_tables;
 use crate::optimise::Outcome;
 use crate::report::{AtBound, Characteristic, CharacteristicColumn, Report, short};
 use crate::study::{EngineComparison, EngineRow};
@@ -16,7 +17,7 @@ pub(super) fn table(head: &[&str]) -> Table {
     table
 }
 
-fn maybe(value: Option<f64>) -> String {
+pub(super) fn maybe(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), short)
 }
 
@@ -56,9 +57,15 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
     if !report.constraints.is_empty() {
         text += &format!("{}\n\n", limits(report));
     }
+    text += &design_tables(report);
     if let (Some(start), Some(optimum)) = (&report.objective.start, &report.objective.optimum) {
         text += &format!(
-            "mean friction loss: {} W at the start, {} W at the design{}\n",
+            "{}: {} W at the start, {} W at the design{}\n",
+            if report.objective.worst_case.is_empty() {
+                "mean friction loss"
+            } else {
+                "largest loss x weight"
+            },
             short(start.total_w),
             short(optimum.total_w),
             report.objective.saving_percent.map_or_else(String::new, |s| format!(", {} % saved", short(s)))
@@ -71,6 +78,9 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
         report.cost.gradient_calls,
         short(report.cost.seconds)
     );
+    if let Some(steps) = report.kkt.polish_steps {
+        text += &format!("polished by {steps} Newton step{}\n", if steps == 1 { "" } else { "s" });
+    }
     if report.kkt.combined > 1 {
         text += &format!(
             "the optimum lies on a kink: the residual combines {} gradients met there\n",
@@ -86,7 +96,14 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
             .median_simulations
             .map_or_else(String::new, |m| format!(", {m} simulations in the median"));
         text += &format!("{} starts, {converged} converged{median}\n", starts.runs.len());
-        for (k, o) in starts.optima.iter().enumerate() {
+        let flat = starts.same_loss && starts.optima.len() > 1;
+        if let (true, Some(best)) = (flat, starts.optima.first()) {
+            let (loss, designs) = (short(best.loss_w), starts.optima.len());
+            text += &format!(
+                "all at {loss} W within 1e-4, at {designs} designs: the loss is flat between them\n"
+            );
+        }
+        for (k, o) in starts.optima.iter().enumerate().filter(|_| !flat) {
             text += &format!("optimum {}: {} W, found by {}\n", k + 1, short(o.loss_w), o.found);
         }
     }
@@ -107,7 +124,7 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
 }
 
 /// A word of the report's format as one reads it.
-fn word(value: serde_json::Result<serde_json::Value>) -> String {
+pub(super) fn word(value: serde_json::Result<serde_json::Value>) -> String {
     match value {
         Ok(serde_json::Value::String(name)) => name.replace('-', " "),
         _ => String::new(),

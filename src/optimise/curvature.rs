@@ -16,6 +16,10 @@ const STEP: f64 = 1e-4;
 const AT_BOUND: f64 = 1e-6;
 /// Multipliers above this share of the largest one belong to active constraints.
 const ACTIVE: f64 = 1e-6;
+/// An eigenvalue below this share of the largest one is none.
+const FLAT: f64 = 1e-5;
+/// Entries of a direction below this size are none.
+const NOTHING: f64 = 1e-12;
 /// Directions up to which the curvature is worth its simulations.
 const MOST: usize = 12;
 
@@ -32,6 +36,11 @@ pub struct Curvature {
 }
 
 impl Curvature {
+    /// Size below which an eigenvalue is nothing but what differences leave.
+    fn noise(&self) -> f64 {
+        FLAT * self.eigenvalues.iter().fold(0.0f64, |a, e| a.max(e.abs()))
+    }
+
     /// What it says about the design.
     pub fn verdict(&self) -> &'static str {
         match self.eigenvalues.first() {
@@ -39,6 +48,9 @@ impl Curvature {
                 "a corner of the limits: bounds and active constraints leave no direction free"
             }
             None => "not computed: too many directions are free",
+            Some(least) if least.abs() <= self.noise() => {
+                "flat: along a direction the limits leave free, the loss hardly changes"
+            }
             Some(least) if *least > 0.0 => {
                 "a strict local minimum: the loss rises along every direction the limits leave free"
             }
@@ -79,7 +91,7 @@ pub fn curvature<P: ConstrainedProblem + ?Sized>(
     for (j, d) in basis.iter().enumerate() {
         // Differences stay in the box.
         let room = |k: usize| (s[k] - scaled.lower[k]).min(scaled.upper[k] - s[k]) / d[k].abs();
-        let step = (0..s.len()).filter(|k| d[*k] != 0.0).map(room).fold(STEP, f64::min);
+        let step = (0..s.len()).filter(|k| d[*k].abs() > NOTHING).map(room).fold(STEP, f64::min);
         let side = |sign: f64| -> Result<DVector<f64>, EvaluationError> {
             let moved: Vec<f64> = s.iter().zip(d.iter()).map(|(s, d)| s + sign * step * d).collect();
             Ok(lagrangian(&scaled.slopes(&moved)?, multipliers))
@@ -94,7 +106,8 @@ pub fn curvature<P: ConstrainedProblem + ?Sized>(
     let direction = |k: usize| {
         let column = eigen.eigenvectors.column(k);
         let sum = basis.iter().zip(column.iter()).map(|(d, w)| d * *w);
-        sum.fold(DVector::zeros(s.len()), |a, d| a + d).iter().copied().collect()
+        let sum = sum.fold(DVector::zeros(s.len()), |a, d| a + d);
+        sum.iter().map(|v| if v.abs() < NOTHING { 0.0 } else { *v }).collect()
     };
     Ok(Curvature {
         free_directions: free,
@@ -114,7 +127,7 @@ fn lagrangian(slopes: &super::Slopes, l: &Multipliers) -> DVector<f64> {
 }
 
 /// An orthonormal basis of the directions at right angles to all rows.
-fn free_directions(rows: &[Vec<f64>], n: usize) -> Vec<DVector<f64>> {
+pub(super) fn free_directions(rows: &[Vec<f64>], n: usize) -> Vec<DVector<f64>> {
     const INDEPENDENT: f64 = 1e-8;
     let mut taken: Vec<DVector<f64>> = Vec::new();
     let mut free: Vec<DVector<f64>> = Vec::new();

@@ -65,6 +65,7 @@
 //! ```
 
 mod bundle;
+mod case;
 mod cobyla;
 mod curvature;
 mod descent;
@@ -74,26 +75,34 @@ mod lagrangian;
 mod linear;
 #[cfg(test)]
 mod linear_tests;
+mod memory;
 mod methods;
 mod minimum;
 mod outcome;
+mod polish;
 mod problem;
 mod qp;
 mod quasi_newton;
 mod record;
+mod robust;
 mod sqp;
 #[cfg(test)]
 mod sqp_tests;
 mod starts;
 mod state;
+mod worst;
 
+pub use case::{Case, Evaluated, Limit, Sense};
 pub use curvature::{Curvature, curvature};
-pub use design::{Case, DesignProblem, Evaluated, Limit, Sense};
+pub use design::DesignProblem;
 pub use linear::{LinearConstraint, Relation};
 pub use methods::{Budget, Method, SearchOptions, search};
 pub use minimum::Minimum;
 pub use outcome::Outcome;
-pub use problem::{ConstrainedProblem, EvaluationError, Slopes, Values};
+pub use polish::{Polished, polish};
+pub use problem::{ConstrainedProblem, Curved, EvaluationError, ManyObjectives, Slopes, Values};
+pub use robust::{Margins, Robust};
 pub use sqp::{Sqp, SqpOptions, minimise};
 pub use starts::latin_hypercube;
 pub use state::{Multipliers, SqpState};
+pub use worst::search_worst;

@@ -67,6 +67,21 @@ pub trait ConstrainedProblem {
     fn accepted(&self, _news: &crate::run::IterationEvent) {}
 }
 
+/// A problem whose objective has parts that can be told apart, such as the losses at several operating points.
+pub trait ManyObjectives: ConstrainedProblem {
+    /// The parts at `x`.
+    fn objectives(&self, x: &[f64]) -> Result<Vec<f64>, EvaluationError>;
+    /// Their gradients.
+    fn objective_slopes(&self, x: &[f64]) -> Result<Vec<Vec<f64>>, EvaluationError>;
+}
+
+/// A problem that knows how its gradients change along a direction: Hessians times a vector.
+pub trait Curved: ConstrainedProblem {
+    /// Derivative of every gradient at `x` along `direction`. Differences may be taken over a thousandth of the direction, which
+    /// should therefore not be longer than what variables change in practice.
+    fn slopes_along(&self, x: &[f64], direction: &[f64]) -> Result<Slopes, EvaluationError>;
+}
+
 /// The problem in variables of order one, its objective divided by its size at the start.
 pub(super) struct Scaled<'p, P: ?Sized> {
     pub problem: &'p P,
@@ -130,6 +145,11 @@ impl<'p, P: ConstrainedProblem + ?Sized> Scaled<'p, P> {
     pub fn linear_prices(&self, multipliers: &[f64]) -> Vec<f64> {
         let rows = self.problem.linear();
         rows.iter().zip(multipliers).map(|(r, m)| m * self.objective_scale / r.size(&self.width)).collect()
+    }
+
+    /// A direction of the scaled variables in true ones, times a factor.
+    pub fn direction(&self, d: &[f64], by: f64) -> Vec<f64> {
+        d.iter().zip(&self.width).map(|(d, w)| by * d * w).collect()
     }
 
     pub fn values(&self, s: &[f64]) -> Result<Values, EvaluationError> {

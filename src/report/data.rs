@@ -1,6 +1,8 @@
 //! Content of `report.json`. Every number that has a unit names it in its key or stands beside it.
 
-use super::{ParetoReport, RivalRun, StartsReport};
+use super::{
+    ChoicesReport, LinearReport, ParetoReport, RivalRun, RobustReport, StartsReport, WorstCaseReport,
+};
 use crate::gradient::{EngineName, TaylorRow};
 use crate::optimise::{Curvature, Outcome};
 use crate::orbit::Recording;
@@ -30,6 +32,8 @@ pub struct Report {
     pub objective: ObjectiveReport,
     /// Every limit, one entry per bearing and operating point.
     pub constraints: Vec<ConstraintReport>,
+    /// Limits on sums of parameters.
+    pub linear_constraints: Vec<LinearReport>,
     /// Optimality.
     pub kkt: KktReport,
     /// Cylinder pressure at the first operating point; none if no bearing takes its load from the machine.
@@ -46,6 +50,10 @@ pub struct Report {
     pub rivals: Vec<RivalRun>,
     /// The least loss over a limit on another quantity, if the study asks for it.
     pub pareto: Option<ParetoReport>,
+    /// Margins for what scatters, if the study asks for them.
+    pub robust: Option<RobustReport>,
+    /// What was chosen from lists, if the study has any.
+    pub choices: Option<ChoicesReport>,
     /// Work done.
     pub cost: CostReport,
     /// What is assumed and why.
@@ -128,6 +136,8 @@ pub struct ObjectiveReport {
     pub saving_percent: Option<f64>,
     /// Bearings and operating points.
     pub operating_points: Vec<CaseLoss>,
+    /// Operating points by what they decide; empty unless the worst case counts.
+    pub worst_case: Vec<WorstCaseReport>,
 }
 
 /// Loss of one bearing at one operating point.
@@ -164,6 +174,8 @@ pub struct ConstraintReport {
     pub exact_value: Option<f64>,
     /// Bias of the smooth value: smooth less exact, in the same unit; zero for means.
     pub bias: Option<f64>,
+    /// Margin that is kept for what scatters, in the same unit; none without.
+    pub margin: Option<f64>,
     /// Limit.
     pub limit: f64,
     /// Unit of values and limit.
@@ -186,6 +198,8 @@ pub struct KktReport {
     /// Gradients, met within the tolerance of the design, whose combination the residual is of: 1 where the loss is smooth,
     /// more where the optimum lies on a kink.
     pub combined: u64,
+    /// Newton steps of the polish that were kept; none without polish.
+    pub polish_steps: Option<u64>,
     /// Curvature along the directions that the limits leave free; none where no optimum was reached. Watts per box squared.
     pub curvature: Option<Curvature>,
     /// What it says.

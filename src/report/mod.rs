@@ -26,7 +26,10 @@ pub use comparison::{
 pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
 pub use html::html;
-pub use searches::{LocalOptimum, ParetoPoint, ParetoReport, RivalRun, StartRun, StartsReport, pareto_csv};
+pub use searches::{
+    ChoiceReport, ChoiceRun, ChoicesReport, LinearReport, LocalOptimum, ParetoPoint, ParetoReport, RivalRun,
+    RobustReport, SampledLimit, StartRun, StartsReport, ToleranceReport, WorstCaseReport, pareto_csv,
+};
 pub use vtk::film_vtk;
 
 use std::path::Path;

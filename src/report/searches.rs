@@ -18,6 +18,8 @@ pub struct StartsReport {
     pub runs: Vec<StartRun>,
     /// Median of the designs simulated by the searches that converged.
     pub median_simulations: Option<u64>,
+    /// Whether all searches that converged ended with the same loss (within 1e-4), be it at different designs.
+    pub same_loss: bool,
     /// Distinct ends, the best first.
     pub optima: Vec<LocalOptimum>,
 }
@@ -77,6 +79,136 @@ pub struct RivalRun {
     pub gradient_simulations: f64,
     /// Wall time, s.
     pub seconds: f64,
+}
+
+/// A choice and the option that was taken.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ChoiceReport {
+    /// What was chosen.
+    pub name: String,
+    /// The option.
+    pub taken: String,
+}
+
+/// Choices from lists, every combination searched.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ChoicesReport {
+    /// What was taken.
+    pub taken: Vec<ChoiceReport>,
+    /// Names of the parameters, in the order of the designs.
+    pub parameters: Vec<String>,
+    /// Their units.
+    pub units: Vec<String>,
+    /// One entry per combination.
+    pub runs: Vec<ChoiceRun>,
+}
+
+/// The search with one combination of options.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ChoiceRun {
+    /// Option of each choice.
+    pub options: Vec<String>,
+    /// How it ended.
+    pub status: Outcome,
+    /// Objective at its best design, W.
+    pub loss_w: Option<f64>,
+    /// Largest relative violation of a limit there.
+    pub violation: Option<f64>,
+    /// Designs simulated.
+    pub simulations: u64,
+    /// The design; empty if the start could not be simulated.
+    pub design: Vec<f64>,
+}
+
+/// A robust design: what scatters, by first order and as drawn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RobustReport {
+    /// Standard deviations in each margin.
+    pub sigmas: f64,
+    /// What scatters.
+    pub tolerances: Vec<ToleranceReport>,
+    /// Objective of the design as drawn on paper, W.
+    pub nominal_w: f64,
+    /// Its standard deviation by first order, W.
+    pub deviation_w: f64,
+    /// What is minimised: nominal value and margin, W.
+    pub robust_w: f64,
+    /// Bearings drawn around the design.
+    pub samples: u64,
+    /// How many of them could not be simulated.
+    pub failed: u64,
+    /// Mean objective of those drawn, W.
+    pub sampled_mean_w: Option<f64>,
+    /// Their standard deviation, W.
+    pub sampled_deviation_w: Option<f64>,
+    /// Share of those drawn with an objective above the one that is minimised, per cent.
+    pub above_percent: Option<f64>,
+    /// The limits.
+    pub limits: Vec<SampledLimit>,
+}
+
+/// A quantity that scatters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ToleranceReport {
+    /// Its name.
+    pub parameter: String,
+    /// Its value at the design.
+    pub nominal: f64,
+    /// Its standard deviation.
+    pub deviation: f64,
+    /// Unit of both (a deviation in degC is one in K).
+    pub unit: String,
+}
+
+/// How a limited quantity scatters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SampledLimit {
+    /// Limited quantity.
+    pub quantity: String,
+    /// Bearing.
+    pub bearing: String,
+    /// Operating point.
+    pub operating_point: String,
+    /// Unit of the deviations.
+    pub unit: String,
+    /// Standard deviation by first order.
+    pub deviation: f64,
+    /// Standard deviation of those drawn.
+    pub sampled_deviation: Option<f64>,
+    /// Share of those drawn that break the limit, per cent.
+    pub broken_percent: Option<f64>,
+}
+
+/// A limit on a sum of parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LinearReport {
+    /// The sum in words.
+    pub sum: String,
+    /// "at least", "at most" or "equals".
+    pub sense: String,
+    /// Value at the design.
+    pub value: f64,
+    /// Limit.
+    pub limit: f64,
+    /// Unit of both.
+    pub unit: String,
+    /// Whether it holds the design back.
+    pub active: bool,
+    /// What one unit more of room would save, W; none where no optimum was reached.
+    pub price_w_per_unit: Option<f64>,
+}
+
+/// An operating point where the worst case counts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WorstCaseReport {
+    /// Its name.
+    pub operating_point: String,
+    /// Loss times weight at the start design, W.
+    pub start_w: Option<f64>,
+    /// The same at the design found, W.
+    pub optimum_w: f64,
+    /// Its share in the decision; those of all add up to one.
+    pub share: f64,
 }
 
 /// The least loss over a limit on another quantity.

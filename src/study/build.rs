@@ -3,6 +3,7 @@
 use super::check::Study;
 use super::file::{CavitationName, CavityShearName, FilmModelName};
 use super::plans::{BearingPlan, LoadPlan};
+use super::robust::RobustPlan;
 use super::vocabulary::QuantityName;
 use crate::cranktrain::{
     BearingLoad, BearingSetup, Cylinder, HeatBalance, JournalBearing, LoadTable, MainLoad, VeeEngine,
@@ -77,7 +78,10 @@ pub fn plan<'r>(
         study.parameters.iter().map(|p| p.lower).collect(),
         study.parameters.iter().map(|p| p.upper).collect(),
     );
-    let problem = DesignProblem::new(cases, limits, bounds, engine(engine_name, study.perturbation), run);
+    let linear = study.linear.iter().map(|l| l.row(study.parameters.len())).collect();
+    let beside = study.robust.as_ref().map_or_else(Vec::new, RobustPlan::values);
+    let engine = engine(engine_name, study.perturbation);
+    let problem = DesignProblem::new(cases, limits, bounds, engine, run).with_linear(linear).beside(beside);
     let start = study.parameters.iter().map(|p| p.start).collect();
     Ok(Plan { problem, cases: labels, limits: limit_labels, quantities, start })
 }
@@ -161,8 +165,8 @@ fn case(
 ) -> Result<Case<JournalBearing>, InvalidParameters> {
     let (plan, at) = (&study.bearings[bearing], &study.points[point]);
     let mine = |p: &super::ParameterPlan| p.bearing.is_none_or(|b| b == bearing);
-    let variables: Vec<usize> = (0..study.parameters.len()).filter(|&j| mine(&study.parameters[j])).collect();
-    let parameters = variables.iter().map(|&j| study.parameters[j].variable.parameter).collect();
+    let all = study.variables().enumerate().filter(|(_, p)| mine(p));
+    let (variables, parameters) = all.map(|(j, p)| (j, p.variable.parameter)).unzip();
     let load = Arc::new(load(study, &plan.load, at.load_factor)?);
     let setup = BearingSetup { speed_rad_s: at.speed_rad_s, parameters, ..setup(study, plan, film, load) };
     Ok(Case {
@@ -171,6 +175,7 @@ fn case(
         quantities: names.iter().map(|q| q.of_cycle(study.sharpness).0).collect(),
         options: study.orbit,
         objective: vec![(0, at.weight * f64::from(plan.count))],
+        part: point,
     })
 }
 

@@ -42,6 +42,9 @@ pub(super) fn refuse_search(file: &StudyFile, faults: &mut Faults) -> bool {
     faults.unused(&file.optimiser, "optimiser", why);
     faults.unused(&file.comparison, "comparison", why);
     faults.unused(&file.pareto, "pareto", why);
+    faults.unused(&file.linear_constraints, "linear_constraints", why);
+    faults.unused(&file.robust, "robust", why);
+    faults.unused(&file.choices, "choices", why);
     true
 }
 

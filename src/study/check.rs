@@ -2,13 +2,16 @@
 
 use super::bearings::{Bearings, Frame};
 use super::characteristic::CharacteristicPlan;
+use super::choices::{Choices, choices};
 use super::comparison::ComparisonPlan;
 use super::document::{Format, parse};
 use super::faults::{Fault, Faults, StudyErrors, line_of, without_nulls};
 use super::file::{FilmModelName, StudyFile};
+use super::linear::{LinearPlan, linear_constraints};
 use super::oil::OilUse;
 use super::pareto::ParetoPlan;
 use super::plans::{BearingPlan, ConstraintPlan, FilmPlan, OilPlan, OperatingPoint, ParameterPlan};
+use super::robust::{RobustPlan, robust};
 use super::searches::SearchPlan;
 use super::{
     FORMAT, bearings, characteristic, comparison, constraints, film, heat, loads, oil, parameters, pareto,
@@ -60,6 +63,10 @@ pub struct Study {
     pub(super) characteristic: Option<CharacteristicPlan>,
     pub(super) comparison: Option<ComparisonPlan>,
     pub(super) pareto: Option<ParetoPlan>,
+    pub(super) linear: Vec<LinearPlan>,
+    pub(super) worst_case: bool,
+    pub(super) robust: Option<RobustPlan>,
+    pub(super) choices: Option<Choices>,
     pub(super) cylinder: Option<Cylinder>,
     pub(super) vee: Option<VeeEngine>,
 }
@@ -77,8 +84,11 @@ impl Study {
             StudyErrors { faults: faults.collect(), text: text.to_owned() }
         })?;
         let mut faults = Faults::of(value.clone());
-        let study = match StudyFile::deserialize(value) {
-            Ok(file) => check(file, base, &mut faults),
+        let study = match StudyFile::deserialize(value.clone()) {
+            Ok(file) => check(file, base, &mut faults).map(|study| {
+                let choices = choices(&study.file, &value, base, &mut faults);
+                Self { choices, ..study }
+            }),
             Err(e) => {
                 faults.add("", format!("the file must be a table of sections ({e})"));
                 None
@@ -100,11 +110,15 @@ impl Study {
         Err(StudyErrors { faults, text: text.to_owned() })
     }
 
+    /// Everything a gradient is taken by: the design parameters, then what scatters without being one.
+    pub(super) fn variables(&self) -> impl Iterator<Item = &ParameterPlan> {
+        self.parameters.iter().chain(self.robust.iter().flat_map(|r| &r.beside))
+    }
+
     /// Whether half of the width of a bearing tells all.
     pub(super) fn half_suffices(&self, bearing: usize) -> bool {
         let tilts = self
-            .parameters
-            .iter()
+            .variables()
             .any(|p| p.bearing == Some(bearing) && matches!(p.variable.parameter, BearingParameter::Tilt(_)));
         self.bearings[bearing].symmetric(tilts)
     }
@@ -126,7 +140,7 @@ impl Study {
     }
 }
 
-fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Option<Study> {
+pub(super) fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Option<Study> {
     faults.unknown::<StudyFile>(&file.unknown, "");
     if let Some(format) = faults.need(&file.format, "format").filter(|f| f != FORMAT) {
         faults.add("format", format!("this program reads \"{FORMAT}\", found \"{format}\""));
@@ -166,6 +180,9 @@ fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Optio
         sharpness,
         comparison,
         pareto,
+        linear,
+        worst_case,
+        robust,
     } = search?;
     let mut study = Study {
         hash: String::new(),
@@ -176,6 +193,10 @@ fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Faults) -> Optio
         characteristic,
         comparison,
         pareto,
+        linear,
+        worst_case,
+        robust,
+        choices: None,
         film: film?,
         orbit: orbit?,
         oil: oil?,
@@ -207,6 +228,9 @@ struct Search {
     sharpness: f64,
     comparison: Option<ComparisonPlan>,
     pareto: Option<ParetoPlan>,
+    linear: Vec<LinearPlan>,
+    worst_case: bool,
+    robust: Option<RobustPlan>,
 }
 
 impl Search {
@@ -222,6 +246,9 @@ impl Search {
             sharpness: sections::SHARPNESS,
             comparison: None,
             pareto: None,
+            linear: Vec::new(),
+            worst_case: false,
+            robust: None,
         }
     }
 }
@@ -232,17 +259,22 @@ fn search(
     film: Option<&FilmPlan>,
     faults: &mut Faults,
 ) -> Option<Search> {
-    let points = sections::points(file, faults);
+    let (points, worst_case) = sections::points(file, faults).unzip();
     let before = faults.count();
     let parameters = parameters::parameters(file, named, film, faults);
     let all = parameters.as_ref().filter(|_| faults.count() == before).map(Vec::len);
     let constraints = constraints::constraints(file, named, faults);
     let comparison = comparison::comparison(file, all, faults);
     let pareto = pareto::pareto(file, named, faults);
+    let linear = linear_constraints(file, parameters.as_deref().unwrap_or_default(), faults);
+    let robust = robust(file, named, film, parameters.as_deref().unwrap_or_default(), faults);
     let (gradient, optimiser) = match file.comparison.is_absent() {
         true => (sections::gradient(file, faults), sections::optimiser(file, faults)),
         false => {
             faults.unused(&file.pareto, "pareto", comparison::WHY);
+            faults.unused(&file.robust, "robust", comparison::WHY);
+            faults.unused(&file.linear_constraints, "linear_constraints", comparison::WHY);
+            faults.unused(&file.choices, "choices", comparison::WHY);
             let perturbation = comparison::perturbation(file, faults);
             (perturbation.map(|eps| (EngineName::Adj, eps)), comparison::sharpness(file, faults))
         }
@@ -258,6 +290,9 @@ fn search(
         sharpness,
         comparison,
         pareto,
+        linear,
+        worst_case: worst_case?,
+        robust,
     })
 }
 

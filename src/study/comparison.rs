@@ -128,7 +128,18 @@ pub(super) fn sharpness(file: &mut StudyFile, faults: &mut Faults) -> Option<(Se
         "optimiser",
         WHY,
         used,
-        [method, tolerance, max_iterations, step_limit, starts, seed, max_simulations, max_time, rivals]
+        [
+            method,
+            tolerance,
+            max_iterations,
+            step_limit,
+            starts,
+            seed,
+            max_simulations,
+            max_time,
+            rivals,
+            polish
+        ]
     );
     let path = "optimiser.aggregate_sharpness";
     let sharpness = faults.or(&mut o.aggregate_sharpness, path, SHARPNESS);

@@ -8,16 +8,19 @@
 //! Reading never stops at the first mistake: every value that does not fit is kept as [`Given::Wrong`], and the check
 //! reports all of them with their places.
 
+mod answer;
 mod bearings;
 mod build;
 mod characterise;
 mod characteristic;
 mod check;
+mod choices;
 mod compare;
 mod comparison;
 mod constraints;
 mod document;
 mod engines;
+mod evidence;
 mod faults;
 mod file;
 mod film;
@@ -25,6 +28,8 @@ mod fit;
 mod given;
 mod heat;
 mod lexicon;
+mod limits;
+mod linear;
 mod loads;
 mod machine;
 mod methods;
@@ -35,11 +40,13 @@ mod pareto;
 mod plans;
 mod prove;
 mod rheology;
+mod robust;
 mod roughness;
 mod run;
 mod schema;
 mod searches;
 mod sections;
+mod seek;
 mod sensitivity;
 mod shapes;
 mod supply;
@@ -47,6 +54,7 @@ mod table;
 mod variables;
 mod viscosity;
 mod vocabulary;
+mod warm_start;
 
 pub use build::{CaseLabel, LimitLabel, Plan, plan};
 pub use characterise::characterise;

@@ -39,10 +39,10 @@ pub(super) fn loss(orbit: &Orbit) -> Loss {
     }
 }
 
-/// Weighted loss of all cases.
-pub(super) fn total_loss(study: &Study, cases: &[CaseLabel], at: &Evaluated) -> Loss {
+/// Weighted losses of all bearings at one operating point, or at all.
+pub(super) fn total_loss(study: &Study, cases: &[CaseLabel], at: &Evaluated, only: Option<usize>) -> Loss {
     let mut sum = Loss { total_w: 0.0, hydrodynamic_w: 0.0, contact_w: 0.0, dissipation_w: 0.0 };
-    for (label, orbit) in cases.iter().zip(&at.orbits) {
+    for (label, orbit) in cases.iter().zip(&at.orbits).filter(|(l, _)| only.is_none_or(|p| p == l.point)) {
         let one = loss(orbit);
         let share = study.points[label.point].weight * f64::from(study.bearings[label.bearing].count);
         sum.total_w += share * one.total_w;

@@ -10,7 +10,8 @@ use super::faults::{Faults, join};
 use super::file::{ConstraintFile, ParetoFile, StudyFile};
 use super::plans::ConstraintPlan;
 use super::searches::{FEASIBLE, Searched, resume};
-use crate::optimise::{Minimum, Outcome, search};
+use super::seek::seek;
+use crate::optimise::{Minimum, Outcome};
 use crate::report::{ParetoPoint, ParetoReport};
 use crate::run::{Event, RunContext, Store};
 use crate::units::tidy;
@@ -100,7 +101,8 @@ pub(super) fn front<'r>(
             plan.problem.begin_beside(cycles);
         }
         let start = start.clone();
-        let Ok(minimum) = search(&plan.problem, &start, &study.optimiser.options) else { continue };
+        let Ok(end) = seek(&moved, &plan, &start, &study.optimiser.options) else { continue };
+        let minimum = end.minimum;
         points.push(point(&moved, wanted, &plan, &minimum, *limit));
         neighbour = Some((plan, minimum));
     }
@@ -108,7 +110,7 @@ pub(super) fn front<'r>(
     Some(ParetoReport {
         quantity: wanted.base.quantity.key().to_owned(),
         bearing: wanted.base.bearing.map(label),
-        sense: super::run::words(wanted.base.sense).to_owned(),
+        sense: super::limits::words(wanted.base.sense).to_owned(),
         unit: unit.to_owned(),
         parameters: study.parameters.iter().map(|p| p.name.clone()).collect(),
         units: study.parameters.iter().map(|p| p.variable.unit.to_owned()).collect(),

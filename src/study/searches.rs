@@ -5,8 +5,9 @@
 
 use super::build::{Plan, plan};
 use super::check::Study;
+use super::seek::{End, seek};
 use crate::gradient::EngineName;
-use crate::optimise::{Method, Minimum, Outcome, SearchOptions, latin_hypercube, search};
+use crate::optimise::{Method, Minimum, Outcome, Polished, SearchOptions, latin_hypercube};
 use crate::report::{LocalOptimum, RivalRun, StartRun, StartsReport};
 use crate::run::{Cost, Event, RunContext, Silent, Store};
 use rayon::prelude::*;
@@ -27,6 +28,8 @@ pub struct SearchPlan {
     pub starts: u64,
     /// Seed of the hypercube.
     pub seed: u64,
+    /// Whether the optimum is polished with second derivatives.
+    pub polish: bool,
     /// Other methods and engines that are to search from the same start, for comparison.
     pub rivals: Vec<(Method, EngineName)>,
 }
@@ -35,6 +38,10 @@ pub struct SearchPlan {
 pub(super) struct Searched<'r> {
     pub plan: Plan<'r>,
     pub minimum: Minimum,
+    /// Share of each operating point in the decision; empty unless the worst case counts.
+    pub shares: Vec<f64>,
+    /// What polishing did.
+    pub polished: Option<Polished>,
     /// All searches, if there were several.
     pub starts: Option<StartsReport>,
     /// Work of the searches that did not win: simulations, and gradients beyond them.
@@ -52,49 +59,58 @@ pub(super) fn resume<'r>(study: &Study, plan: &mut Plan<'r>, name: String, store
     if known { plan.problem.costs().0.simulations } else { 0 }
 }
 
-/// Searches; the reason if the study's model does not exist or argmin failed.
+/// Searches from the study's start or from another design; the reason if the study's model does not exist or argmin failed. What is
+/// saved gets `prefix` before its name.
 pub(super) fn searches<'r>(
     study: &Study,
+    from: Option<&[f64]>,
+    prefix: &str,
     context: RunContext<'r>,
     store: &'r dyn Store,
 ) -> Result<Searched<'r>, String> {
     let options = &study.optimiser.options;
     if study.optimiser.starts <= 1 {
         let mut plan = plan(study, study.engine, context).map_err(|e| e.to_string())?;
-        let known = resume(study, &mut plan, "search".to_owned(), store);
+        let known = resume(study, &mut plan, format!("{prefix}search"), store);
         if known > 0 {
             let name = format!("going on where the last run stopped, with {known} simulations known");
             context.progress.tell(&Event::Stage { name });
         }
-        let minimum = search(&plan.problem, &plan.start, options).map_err(|e| e.to_string())?;
-        return Ok(Searched { plan, minimum, starts: None, others: Default::default() });
+        let start = from.unwrap_or(&plan.start).to_vec();
+        let End { minimum, shares, polished } = seek(study, &plan, &start, options)?;
+        return Ok(Searched { plan, minimum, shares, polished, starts: None, others: Default::default() });
     }
-    let starts = starts(study);
-    let ends: Vec<Result<(Plan, Minimum), String>> = starts
+    let mut starts = starts(study);
+    if let Some(from) = from {
+        starts[0] = from.to_vec();
+    }
+    let ends: Vec<Result<(Plan, End), String>> = starts
         .par_iter()
         .enumerate()
         .map(|(k, start)| {
             let quiet = RunContext { progress: &Silent, ..context };
             let mut plan = plan(study, study.engine, quiet).map_err(|e| e.to_string())?;
-            resume(study, &mut plan, format!("start-{k}"), store);
-            let minimum = search(&plan.problem, start, options).map_err(|e| e.to_string())?;
-            let loss = minimum.values.as_ref().map_or(f64::NAN, |v| v.objective);
+            resume(study, &mut plan, format!("{prefix}start-{k}"), store);
+            let end = seek(study, &plan, start, options)?;
+            let loss = end.minimum.values.as_ref().map_or(f64::NAN, |v| v.objective);
             let name = format!("start {} of {}: {}", k + 1, starts.len(), crate::report::short(loss));
             context.progress.tell(&Event::Stage { name: format!("{name} W") });
-            Ok((plan, minimum))
+            Ok((plan, end))
         })
         .collect();
-    let mut ends: Vec<(Plan, Minimum)> = ends.into_iter().collect::<Result<_, _>>()?;
+    let mut ends: Vec<(Plan, End)> = ends.into_iter().collect::<Result<_, _>>()?;
     let report = report(study, &starts, &ends);
-    let best = (0..ends.len()).min_by(|a, b| rank(&ends[*a].1).total_cmp(&rank(&ends[*b].1))).unwrap_or(0);
-    let (mut plan, minimum) = ends.swap_remove(best);
+    let best = (0..ends.len())
+        .min_by(|a, b| rank(&ends[*a].1.minimum).total_cmp(&rank(&ends[*b].1.minimum)))
+        .unwrap_or(0);
+    let (mut plan, End { minimum, shares, polished }) = ends.swap_remove(best);
     let others = ends
         .iter()
         .map(|(p, _)| p.problem.costs())
         .fold((Cost::default(), Cost::default()), |a, c| (a.0 + c.0, a.1 + c.1));
     // The saving is against the study's start, whichever start led to the best design.
     plan.start = study.parameters.iter().map(|p| p.start).collect();
-    Ok(Searched { plan, minimum, starts: Some(report), others })
+    Ok(Searched { plan, minimum, shares, polished, starts: Some(report), others })
 }
 
 /// Designs simulated for a plan.
@@ -103,7 +119,7 @@ fn simulations(plan: &Plan) -> u64 {
 }
 
 /// Feasible ends by their loss, others behind them by their violation.
-fn rank(end: &Minimum) -> f64 {
+pub(super) fn rank(end: &Minimum) -> f64 {
     match &end.values {
         Some(v) if v.violation() <= FEASIBLE => v.objective,
         Some(v) => 1e100 * (1.0 + v.violation()),
@@ -118,7 +134,7 @@ fn starts(study: &Study) -> Vec<Vec<f64>> {
     std::iter::once(p.iter().map(|p| p.start).collect()).chain(spread.into_iter().map(inside)).collect()
 }
 
-fn report(study: &Study, starts: &[Vec<f64>], ends: &[(Plan, Minimum)]) -> StartsReport {
+fn report(study: &Study, starts: &[Vec<f64>], ends: &[(Plan, End)]) -> StartsReport {
     let shown = |x: &[f64]| -> Vec<f64> {
         x.iter().zip(&study.parameters).map(|(x, p)| p.variable.shown(*x)).collect()
     };
@@ -130,10 +146,10 @@ fn report(study: &Study, starts: &[Vec<f64>], ends: &[(Plan, Minimum)]) -> Start
     };
     let mut optima: Vec<(&Minimum, usize)> = Vec::new();
     let mut order: Vec<usize> = (0..ends.len()).collect();
-    order.sort_by(|a, b| rank(&ends[*a].1).total_cmp(&rank(&ends[*b].1)));
+    order.sort_by(|a, b| rank(&ends[*a].1.minimum).total_cmp(&rank(&ends[*b].1.minimum)));
     let mut belongs = vec![None; ends.len()];
     for k in order {
-        let end = &ends[k].1;
+        let end = &ends[k].1.minimum;
         let converged = matches!(end.outcome, Outcome::Converged | Outcome::AlmostConverged);
         let Some(loss) = end.values.as_ref().map(|v| v.objective).filter(|_| converged) else { continue };
         let same = optima.iter().position(|(o, _)| {
@@ -150,22 +166,29 @@ fn report(study: &Study, starts: &[Vec<f64>], ends: &[(Plan, Minimum)]) -> Start
     let mut simulated: Vec<u64> =
         (0..ends.len()).filter(|k| belongs[*k].is_some()).map(|k| simulations(&ends[k].0)).collect();
     simulated.sort_unstable();
-    let runs = ends.iter().zip(starts).zip(&belongs).map(|(((plan, end), start), optimum)| StartRun {
-        start: shown(start),
-        status: end.outcome,
-        loss_w: end.values.as_ref().map(|v| v.objective),
-        violation: end.values.as_ref().map(|v| v.violation()),
-        kkt: end.kkt.is_finite().then_some(end.kkt),
-        simulations: simulations(plan),
-        gradient_calls: end.gradients,
-        optimum: *optimum,
-    });
+    let runs =
+        ends.iter().zip(starts).zip(&belongs).map(|(((plan, End { minimum: end, .. }), start), optimum)| {
+            StartRun {
+                start: shown(start),
+                status: end.outcome,
+                loss_w: end.values.as_ref().map(|v| v.objective),
+                violation: end.values.as_ref().map(|v| v.violation()),
+                kkt: end.kkt.is_finite().then_some(end.kkt),
+                simulations: simulations(plan),
+                gradient_calls: end.gradients,
+                optimum: *optimum,
+            }
+        });
     let optimum = |(end, found): &(&Minimum, usize)| LocalOptimum {
         loss_w: end.values.as_ref().map_or(f64::NAN, |v| v.objective),
         design: shown(&end.x),
         found: *found as u64,
     };
+    let losses = || optima.iter().filter_map(|(end, _)| end.values.as_ref().map(|v| v.objective));
+    let spread = losses().fold(f64::NEG_INFINITY, f64::max) - losses().fold(f64::INFINITY, f64::min);
+    let same_loss = losses().next().is_some_and(|first| spread <= SAME_LOSS * first.abs());
     StartsReport {
+        same_loss,
         seed: study.optimiser.seed,
         parameters: study.parameters.iter().map(|p| p.name.clone()).collect(),
         units: study.parameters.iter().map(|p| p.variable.unit.to_owned()).collect(),
@@ -201,7 +224,7 @@ fn rival_run<'r>(
     let mut plan = plan(study, engine, context).ok()?;
     resume(study, &mut plan, format!("rival-{k}"), store);
     let options = SearchOptions { method, ..study.optimiser.options };
-    let end = search(&plan.problem, &plan.start, &options).ok()?;
+    let end = seek(study, &plan, &plan.start, &options).ok()?.minimum;
     let (simulations, gradients) = plan.problem.costs();
     let per_cycle = simulations.factorisations as f64 / simulations.simulations.max(1) as f64;
     let cases = plan.cases.len() as f64;

@@ -3,7 +3,8 @@
 use super::Given;
 use super::faults::{Faults, join, pointer, without_nulls};
 use super::file::{
-    GradientFile, ObjectiveFile, OperatingPointFile, OptimiserFile, OrbitFile, SchemeName, StudyFile,
+    AggregateName, GradientFile, ObjectiveFile, OperatingPointFile, OptimiserFile, OrbitFile, SchemeName,
+    StudyFile,
 };
 use super::plans::OperatingPoint;
 use super::searches::SearchPlan;
@@ -61,10 +62,12 @@ pub(super) fn orbit_options(o: &mut OrbitFile, faults: &mut Faults) -> OrbitOpti
     }
 }
 
-pub(super) fn points(file: &mut StudyFile, faults: &mut Faults) -> Option<Vec<OperatingPoint>> {
+/// The operating points, and whether the worst of them counts.
+pub(super) fn points(file: &mut StudyFile, faults: &mut Faults) -> Option<(Vec<OperatingPoint>, bool)> {
     faults.need(&file.objective, "objective");
     let Given::Value(objective) = &mut file.objective else { return None };
     faults.unknown::<ObjectiveFile>(&objective.unknown, "objective");
+    let aggregate = faults.or(&mut objective.aggregate, "objective.aggregate", AggregateName::WeightedMean);
     let path = "objective.operating_points";
     faults.need(&objective.operating_points, path);
     let Given::Value(list) = &mut objective.operating_points else { return None };
@@ -97,9 +100,10 @@ pub(super) fn points(file: &mut StudyFile, faults: &mut Faults) -> Option<Vec<Op
             points.push(OperatingPoint { name, speed_rad_s, weight, load_factor });
         }
     }
-    let sum: f64 = points.iter().map(|p| p.weight).sum();
+    let worst = aggregate == AggregateName::WorstCase;
+    let sum: f64 = if worst { 1.0 } else { points.iter().map(|p| p.weight).sum() };
     points.iter_mut().for_each(|p| p.weight /= sum);
-    Some(points)
+    Some((points, worst))
 }
 
 pub(super) fn gradient(file: &mut StudyFile, faults: &mut Faults) -> Option<(EngineName, f64)> {
@@ -162,7 +166,13 @@ pub(super) fn optimiser(file: &mut StudyFile, faults: &mut Faults) -> Option<(Se
     );
     let rivals = rivals.iter().map(|r| (r.method, r.engine.unwrap_or(EngineName::Adj))).collect();
     let options = SearchOptions { method, settings: options, budget: Budget { simulations, seconds } };
-    Some((SearchPlan { options, starts, seed, rivals }, sharpness))
+    let polish = faults.or(&mut o.polish, &at("polish"), false);
+    let worst = file.objective.value().and_then(|o| o.aggregate.value()) == Some(&AggregateName::WorstCase);
+    if polish && (worst || !file.robust.is_absent()) {
+        let words = "is for weighted means without margins; remove it, the worst case or [robust]";
+        faults.add(&at("polish"), words);
+    }
+    Some((SearchPlan { options, starts, seed, rivals, polish }, sharpness))
 }
 
 /// Assumptions must belong to keys that exist.

@@ -66,6 +66,11 @@ impl Variable {
         list
     }
 
+    /// What is measured: values of one kind can be added.
+    pub(super) fn kind(&self) -> &'static str {
+        if self.unit == "um" { "mm" } else { self.unit }
+    }
+
     /// A value in the unit of reports.
     pub fn shown(&self, si: f64) -> f64 {
         (si - self.scale.1) / self.scale.0

@@ -46,7 +46,9 @@ pub use oil::{
     ViscosityPointFile,
 };
 pub use search::{
-    ConstraintFile, GradientFile, ObjectiveFile, OperatingPointFile, OptimiserFile, ParameterFile, ParetoFile,
+    AggregateName, ChoiceFile, ConstraintFile, GradientFile, LinearConstraintFile, ObjectiveFile,
+    OperatingPointFile, OptimiserFile, OptionFile, ParameterFile, ParetoFile, RobustFile, TermFile,
+    ToleranceFile,
 };
 pub use surface::{ContactIntegralName, ContactName, RoughnessFile, ShapeFile, ShapeKind, SurfaceName};
 
@@ -105,6 +107,12 @@ section! {
         parameters: Vec<Given<ParameterFile>>,
         /// Limits of a safe design.
         constraints: Vec<Given<ConstraintFile>>,
+        /// Limits on sums of design parameters.
+        linear_constraints: Vec<Given<LinearConstraintFile>>,
+        /// Margins for what scatters.
+        robust: RobustFile,
+        /// What is chosen from lists.
+        choices: Vec<Given<ChoiceFile>>,
         /// The least loss for each of a list of limits on another quantity.
         pareto: ParetoFile,
         /// How gradients are computed.

@@ -7,6 +7,8 @@ use crate::study::{Given, QuantityName};
 use crate::units::{Rotation, Time};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
 
 section! {
     /// One operating point of the duty cycle.
@@ -22,9 +24,21 @@ section! {
     }
 }
 
+words! {
+    /// What becomes of the losses at the operating points.
+    AggregateName {
+        /// Their weighted mean.
+        WeightedMean,
+        /// The largest of the losses times their weights.
+        WorstCase,
+    }
+}
+
 section! {
-    /// Objective: the weighted mean friction loss of all bearings over the operating points.
+    /// Objective: what becomes of the mean friction losses of all bearings at the operating points.
     ObjectiveFile {
+        /// "weighted-mean" (default) or "worst-case": the largest loss times weight, weights as written.
+        aggregate: AggregateName,
         /// Operating points with their weights.
         operating_points: Vec<Given<OperatingPointFile>>,
     }
@@ -82,6 +96,74 @@ section! {
     }
 }
 
+section! {
+    /// A term of a linear constraint.
+    TermFile {
+        /// Name of a design parameter.
+        parameter: String,
+        /// What its value is multiplied with.
+        factor: f64,
+    }
+}
+
+section! {
+    /// A limit on a sum of design parameters times factors, met by every design that is tried; give one of at_least, at_most, equals.
+    LinearConstraintFile {
+        /// The terms; parameters that are measured in different units cannot be added.
+        terms: Vec<Given<TermFile>>,
+        /// Smallest sum allowed, with unit.
+        at_least: QuantityText,
+        /// Largest sum allowed, with unit.
+        at_most: QuantityText,
+        /// The sum, with unit.
+        equals: QuantityText,
+    }
+}
+
+section! {
+    /// How a quantity scatters from one bearing, or one day, to the next.
+    ToleranceFile {
+        /// Name as of a design parameter; it need not be one.
+        parameter: String,
+        /// Standard deviation, with unit (of temperatures "K").
+        standard_deviation: QuantityText,
+    }
+}
+
+section! {
+    /// A robust design: loss and limits carry a margin of some standard deviations for what scatters.
+    RobustFile {
+        /// Standard deviations in each margin. Default 3.
+        sigmas: f64,
+        /// What scatters.
+        tolerances: Vec<Given<ToleranceFile>>,
+        /// Bearings that are drawn in the end to check the margins. Default 50.
+        samples: u64,
+        /// Seed of the draw. Default 1.
+        seed: u64,
+    }
+}
+
+section! {
+    /// One of the options of a choice.
+    OptionFile {
+        /// Name in reports.
+        name: String,
+        /// Keys of the study by their path, like "oil.grade", with the values they take.
+        set: BTreeMap<String, Value>,
+    }
+}
+
+section! {
+    /// Something that is chosen from a list, such as the oil: every option is searched, the best design is reported.
+    ChoiceFile {
+        /// Name in reports.
+        name: String,
+        /// The options.
+        options: Vec<Given<OptionFile>>,
+    }
+}
+
 /// Another search for comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -114,6 +196,8 @@ section! {
         max_iterations: u64,
         /// Longest change of a parameter in one iteration, as a share of its box. Default 0.4.
         step_limit: f64,
+        /// Whether the optimum is polished by Newton's method, with second derivatives from differences of gradients. Default false.
+        polish: bool,
         /// Sharpness of the smooth extrema of film thickness and pressure: larger is closer to the exact extremum and harder to optimise. Default 200.
         aggregate_sharpness: f64,
     }

@@ -1,0 +1,81 @@
+//! Short tables of what a search was asked beside its limits: sums, worst case, margins, choices.
+
+use super::tables::{maybe, table, word};
+use crate::report::{Report, short};
+
+/// Everything of these that a report has.
+pub(super) fn design_tables(report: &Report) -> String {
+    let mut text = String::new();
+    for rows in [sums(report), worst_case(report), margins(report), choices(report)].into_iter().flatten() {
+        text += &format!("{rows}\n\n");
+    }
+    text
+}
+
+fn sums(report: &Report) -> Option<String> {
+    let mut rows = table(&["sum", "value", "limit", "unit", "state", "price [W/unit]"]);
+    for l in &report.linear_constraints {
+        let state = if l.active { "active" } else { "" };
+        let price = l.price_w_per_unit.filter(|_| l.active).map(short).unwrap_or_default();
+        let limit = format!("{} {}", l.sense, short(l.limit));
+        rows.add_row([l.sum.clone(), short(l.value), limit, l.unit.clone(), state.to_owned(), price]);
+    }
+    (!report.linear_constraints.is_empty()).then(|| rows.to_string())
+}
+
+fn worst_case(report: &Report) -> Option<String> {
+    let mut rows =
+        table(&["worst case", "start [W x weight]", "design [W x weight]", "share of the decision"]);
+    for p in &report.objective.worst_case {
+        let share = format!("{} %", short((1e3 * p.share).round() / 10.0));
+        rows.add_row([p.operating_point.clone(), maybe(p.start_w), short(p.optimum_w), share]);
+    }
+    (!report.objective.worst_case.is_empty()).then(|| rows.to_string())
+}
+
+fn margins(report: &Report) -> Option<String> {
+    let r = report.robust.as_ref()?;
+    let mut rows = table(&["scatters", "at the design", "standard deviation", "drawn", "beyond the limit"]);
+    let share = |percent: Option<f64>| percent.map_or_else(String::new, |p| format!("{} %", short(p)));
+    rows.add_row([
+        "loss [W]".to_owned(),
+        short(r.nominal_w),
+        short(r.deviation_w),
+        maybe(r.sampled_deviation_w),
+        share(r.above_percent),
+    ]);
+    for l in &r.limits {
+        let value = report.constraints.iter().find(|c| {
+            (&c.quantity, &c.bearing, &c.operating_point) == (&l.quantity, &l.bearing, &l.operating_point)
+        });
+        rows.add_row([
+            format!("{} [{}], {}, {}", l.quantity, l.unit, l.bearing, l.operating_point),
+            maybe(value.and_then(|c| c.value)),
+            short(l.deviation),
+            maybe(l.sampled_deviation.map(|s| if s < 1e-9 * l.deviation.max(1.0) { 0.0 } else { s })),
+            share(l.broken_percent),
+        ]);
+    }
+    let (sigmas, drawn) = (short(r.sigmas), r.samples - r.failed);
+    let words = format!("margins of {sigmas} standard deviations, checked with {drawn} bearings drawn");
+    let failed =
+        if r.failed > 0 { format!(", {} more could not be simulated", r.failed) } else { String::new() };
+    Some(format!("{rows}\n{words}{failed}"))
+}
+
+fn choices(report: &Report) -> Option<String> {
+    let c = report.choices.as_ref()?;
+    let names: Vec<&str> = c.taken.iter().map(|t| t.name.as_str()).collect();
+    let mut rows = table(&[&names.join(", "), "outcome", "loss [W]", "violation", "simulations"]);
+    for r in &c.runs {
+        rows.add_row([
+            r.options.join(", "),
+            word(serde_json::to_value(r.status)),
+            maybe(r.loss_w),
+            r.violation.map_or_else(String::new, |v| format!("{v:.1e}")),
+            r.simulations.to_string(),
+        ]);
+    }
+    let taken: Vec<String> = c.taken.iter().map(|t| format!("{}: {}", t.name, t.taken)).collect();
+    Some(format!("{rows}\ntaken: {}", taken.join("; ")))
+}

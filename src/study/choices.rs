@@ -1,0 +1,230 @@
+//! Choices from lists: the study with each combination of options is a study of its own, checked with it and searched one after
+//! the other, each from the design before; the best one is the answer.
+
+use super::check::{Study, check};
+use super::faults::{Faults, join, pointer};
+use super::file::{ChoiceFile, OptionFile, StudyFile};
+use super::searches::{Searched, rank, searches};
+use crate::optimise::Outcome;
+use crate::report::{ChoiceReport, ChoiceRun, ChoicesReport};
+use crate::run::{Cost, Event, RunContext, Store};
+use serde::Deserialize;
+use serde_json::Value;
+use std::path::Path;
+
+const PATH: &str = "choices";
+/// Combinations that are searched at most.
+const MOST: usize = 200;
+
+/// Checked choices.
+#[derive(Debug, Clone)]
+pub(super) struct Choices {
+    /// Names of the choices with those of their options.
+    pub lists: Vec<(String, Vec<String>)>,
+    /// Every combination: which option of each choice, and the study with them.
+    pub variants: Vec<(Vec<usize>, Study)>,
+}
+
+/// A choice as written, checked by itself.
+struct List {
+    name: String,
+    options: Vec<(String, Vec<(String, Value)>)>,
+}
+
+/// The variants of a study, if it has choices; `raw` is the study as written.
+pub(super) fn choices(
+    file: &StudyFile,
+    raw: &Value,
+    base: Option<&Path>,
+    faults: &mut Faults,
+) -> Option<Choices> {
+    let list = faults.get(&file.choices, PATH)?;
+    if list.is_empty() {
+        return None;
+    }
+    let mut lists: Vec<List> = Vec::new();
+    for (i, given) in list.iter().enumerate() {
+        let path = format!("{PATH}[{i}]");
+        if let Some(choice) = faults.get(given, &path) {
+            lists.extend(one(&choice, &path, raw, faults));
+        }
+    }
+    let count = lists.iter().map(|l| l.options.len()).product::<usize>();
+    if count > MOST {
+        faults.add(PATH, format!("have {count} combinations; at most {MOST} are searched"));
+    }
+    if faults.any() {
+        return None;
+    }
+    let mut variants = Vec::new();
+    for k in 0..count {
+        let picks = picks(&lists, k);
+        variants.extend(variant(&lists, &picks, raw, base, faults).map(|study| (picks, study)));
+    }
+    let names = |l: List| (l.name, l.options.into_iter().map(|(name, _)| name).collect());
+    Some(Choices { lists: lists.into_iter().map(names).collect(), variants })
+}
+
+fn one(choice: &ChoiceFile, path: &str, raw: &Value, faults: &mut Faults) -> Option<List> {
+    faults.unknown::<ChoiceFile>(&choice.unknown, path);
+    let name = faults.need(&choice.name, &join(path, "name"));
+    let at = join(path, "options");
+    let given = faults.need(&choice.options, &at)?;
+    if given.len() < 2 {
+        faults.add(&at, "needs at least two options");
+    }
+    let mut options: Vec<(String, Vec<(String, Value)>)> = Vec::new();
+    for (k, given) in given.iter().enumerate() {
+        let at = format!("{at}[{k}]");
+        let Some(option) = faults.get(given, &at) else { continue };
+        faults.unknown::<OptionFile>(&option.unknown, &at);
+        let name = faults.need(&option.name, &join(&at, "name"));
+        let Some(set) = faults.need(&option.set, &join(&at, "set")) else { continue };
+        if name.as_ref().is_some_and(|n| options.iter().any(|(other, _)| other == n)) {
+            faults.add(&join(&at, "name"), "stands twice");
+        }
+        for key in set.keys() {
+            if key == PATH || key.starts_with("choices[") || put(&mut raw.clone(), key, Value::Null).is_none()
+            {
+                let words = format!("there is no place '{key}' in this study");
+                faults.add(&join(&at, "set"), words);
+            }
+        }
+        options.push((name.unwrap_or_default(), set.into_iter().collect()));
+    }
+    Some(List { name: name?, options })
+}
+
+/// Which option of each choice the combination `k` takes; the last choice changes fastest.
+fn picks(lists: &[List], mut k: usize) -> Vec<usize> {
+    let mut picks = vec![0; lists.len()];
+    for (pick, list) in picks.iter_mut().zip(lists).rev() {
+        (*pick, k) = (k % list.options.len(), k / list.options.len());
+    }
+    picks
+}
+
+fn variant(
+    lists: &[List],
+    picks: &[usize],
+    raw: &Value,
+    base: Option<&Path>,
+    faults: &mut Faults,
+) -> Option<Study> {
+    let mut value = raw.clone();
+    if let Some(map) = value.as_object_mut() {
+        map.remove(PATH);
+    }
+    for (list, pick) in lists.iter().zip(picks) {
+        for (key, to) in &list.options[*pick].1 {
+            put(&mut value, key, to.clone());
+        }
+    }
+    let mut own = Faults::of(value.clone());
+    let study = StudyFile::deserialize(value).ok().and_then(|file| check(file, base, &mut own));
+    let taken: Vec<&str> = lists.iter().zip(picks).map(|(l, p)| l.options[*p].0.as_str()).collect();
+    for (path, message) in own.into_list() {
+        faults.add(PATH, format!("with \"{}\": {path}: {message}", taken.join("\", \"")));
+    }
+    study
+}
+
+/// Puts a value at a path; the place of its last key must exist, the key itself need not.
+fn put(root: &mut Value, path: &str, value: Value) -> Option<()> {
+    let pointer = pointer(path);
+    let (place, key) = pointer.rsplit_once('/')?;
+    match root.pointer_mut(place)? {
+        Value::Object(map) => {
+            map.insert(key.to_owned(), value);
+        }
+        Value::Array(list) => *list.get_mut(key.parse::<usize>().ok()?)? = value,
+        _ => return None,
+    }
+    Some(())
+}
+
+/// Searches every combination; returns the study that won with what was found, and the table.
+pub(super) fn choose<'r, 's>(
+    choices: &'s Choices,
+    context: RunContext<'r>,
+    store: &'r dyn Store,
+) -> Result<(&'s Study, Searched<'r>, ChoicesReport), String> {
+    let mut best: Option<(usize, Searched<'r>)> = None;
+    let mut runs = Vec::new();
+    let (mut simulations, mut gradients) = (Cost::default(), Cost::default());
+    let mut reason = String::new();
+    for (k, (picks, study)) in choices.variants.iter().enumerate() {
+        if context.cancel.is_cancelled() && best.is_some() {
+            break;
+        }
+        let names = names(choices, picks);
+        let name = format!("choice {} of {}: {}", k + 1, choices.variants.len(), names.join(", "));
+        context.progress.tell(&Event::Stage { name });
+        let from = best.as_ref().map(|(_, found)| found.minimum.x.clone());
+        let found = match searches(study, from.as_deref(), &format!("choice-{k}-"), context, store) {
+            Ok(found) => found,
+            Err(e) => {
+                runs.push(failed(names));
+                reason = e;
+                continue;
+            }
+        };
+        runs.push(run(study, names, &found));
+        let (loser, winner) = match best.take() {
+            Some((j, earlier)) if rank(&earlier.minimum) <= rank(&found.minimum) => {
+                (Some(found), (j, earlier))
+            }
+            Some((_, earlier)) => (Some(earlier), (k, found)),
+            None => (None, (k, found)),
+        };
+        if let Some(loser) = loser {
+            let (own, beyond) = loser.plan.problem.costs();
+            simulations += own + loser.others.0;
+            gradients += beyond + loser.others.1;
+        }
+        best = Some(winner);
+    }
+    let (k, mut found) = best.ok_or(reason)?;
+    found.others.0 += simulations;
+    found.others.1 += gradients;
+    let (picks, study) = &choices.variants[k];
+    let taken = choices
+        .lists
+        .iter()
+        .zip(picks)
+        .map(|((name, options), p)| ChoiceReport { name: name.clone(), taken: options[*p].clone() });
+    let report = ChoicesReport {
+        taken: taken.collect(),
+        parameters: study.parameters.iter().map(|p| p.name.clone()).collect(),
+        units: study.parameters.iter().map(|p| p.variable.unit.to_owned()).collect(),
+        runs,
+    };
+    Ok((study, found, report))
+}
+
+fn names(choices: &Choices, picks: &[usize]) -> Vec<String> {
+    choices.lists.iter().zip(picks).map(|((_, options), p)| options[*p].clone()).collect()
+}
+
+fn failed(options: Vec<String>) -> ChoiceRun {
+    ChoiceRun {
+        options,
+        status: Outcome::StartFailed,
+        loss_w: None,
+        violation: None,
+        simulations: 0,
+        design: Vec::new(),
+    }
+}
+
+fn run(study: &Study, options: Vec<String>, found: &Searched) -> ChoiceRun {
+    let end = &found.minimum;
+    ChoiceRun {
+        options,
+        status: end.outcome,
+        loss_w: end.values.as_ref().map(|v| v.objective),
+        violation: end.values.as_ref().map(|v| v.violation()),
+        simulations: found.plan.problem.costs().0.simulations / found.plan.cases.len() as u64,
+        design: end.x.iter().zip(&study.parameters).map(|(x, p)| p.variable.shown(*x)).collect(),
+    }
+}

@@ -1,0 +1,44 @@
+//! A study that starts from the design of an earlier report.
+
+use super::check::Study;
+use crate::report::{DesignValue, Report};
+use sha2::{Digest, Sha256};
+
+impl Study {
+    /// The study with the values of an earlier design as starts, moved into its boxes; returns how many parameters were found. The
+    /// reports may be of other studies: what counts are the names.
+    ///
+    /// # Errors
+    /// If the report has no parameter of this study, or one in another unit.
+    pub fn started_from(mut self, report: &Report) -> Result<(Self, usize), String> {
+        let found = self.start_at(&report.design)?;
+        if let Some(choices) = &mut self.choices {
+            for (_, variant) in &mut choices.variants {
+                variant.start_at(&report.design)?;
+            }
+        }
+        Ok((self, found))
+    }
+
+    fn start_at(&mut self, design: &[DesignValue]) -> Result<usize, String> {
+        let mut found = 0;
+        for p in &mut self.parameters {
+            let Some(value) = design.iter().find(|d| d.name == p.name) else { continue };
+            if value.unit != p.variable.unit {
+                let (theirs, ours) = (&value.unit, p.variable.unit);
+                return Err(format!("{} is measured in {theirs} there and in {ours} here", p.name));
+            }
+            p.start = (value.value * p.variable.scale.0 + p.variable.scale.1).clamp(p.lower, p.upper);
+            found += 1;
+        }
+        if found == 0 {
+            let names: Vec<&str> = self.parameters.iter().map(|p| p.name.as_str()).collect();
+            return Err(format!("its design has none of the parameters of this study: {}", names.join(", ")));
+        }
+        // Other starts are another search: what was saved of the first must not be taken for its own.
+        let starts: String = self.parameters.iter().map(|p| format!("{:x} ", p.start.to_bits())).collect();
+        let digest = Sha256::digest(format!("{} {starts}", self.hash).as_bytes());
+        self.hash = digest.iter().map(|b| format!("{b:02x}")).collect();
+        Ok(found)
+    }
+}
