@@ -14,7 +14,7 @@
 //! | 9 | [`cli`] | how people come in: `run`, `check`, `schema`, `gradient` |
 //! | 8 | [`study`] | what was asked: study file, checks, the run; the single door below the roof |
 //! | 7 | [`report`] | the answer as data, tables, figures, page |
-//! | 6 | [`optimise`] | which design next: SQP as an argmin solver over Clarabel, an augmented Lagrangian, COBYLA |
+//! | 6 | [`optimise`], [`running_in`] | which design next: SQP as an argmin solver over Clarabel, an augmented Lagrangian, COBYLA; wear through a programme of operating points, with its gradient |
 //! | 5 | [`gradient`] | derivatives of cycle quantities by five engines: FW, BW, CEN, TRA, ADJ |
 //! | 4 | [`orbit`] | the settled periodic cycle of a [`dae`] and quantities of it |
 //! | 3 | [`cranktrain`] | cylinder pressure, slider-crank, loads; one bearing as a periodic system |
@@ -60,5 +60,6 @@ pub mod optimise;
 pub mod orbit;
 pub mod report;
 pub mod run;
+pub mod running_in;
 pub mod study;
 pub mod units;

@@ -210,6 +210,8 @@ dimensions! {
         &[("GB", 1e9, 0.0), ("MB", 1e6, 0.0), ("kB", 1e3, 0.0), ("B", 1.0, 0.0)];
     /// A time.
     TimeKind, Time, "a time", "2 us", &[("s", 1.0, 0.0), ("ms", 1e-3, 0.0), ("us", 1e-6, 0.0)];
+    /// How long something takes.
+    DurationKind, Duration, "a duration", "10 min", &[("s", 1.0, 0.0), ("min", 60.0, 0.0), ("h", 3600.0, 0.0)];
 }
 
 #[cfg(test)]

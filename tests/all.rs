@@ -20,6 +20,7 @@ mod own_model;
 mod own_problem;
 mod recording;
 mod resume;
+mod running_in;
 mod sensitivity;
 mod study_physics;
 

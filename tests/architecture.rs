@@ -12,7 +12,7 @@ const FLOORS: &[&[&str]] = &[
     &["cranktrain"],
     &["orbit"],
     &["gradient"],
-    &["optimise"],
+    &["optimise", "running_in"],
     &["report"],
     &["study"],
     &["cli"],

@@ -217,3 +217,56 @@ fn a_polish_finishes_what_a_short_search_left() {
     let total = |r: &Report| r.objective.optimum.unwrap().total_w;
     assert!((total(&polished) / total(&whole) - 1.0).abs() < 1e-6);
 }
+
+#[test]
+fn margins_of_temperatures_are_differences_of_temperature() {
+    let with = format!("{SCATTER}{COARSE}").replace("samples = 40", "samples = 0");
+    let hot = "[[constraints]]\nquantity = \"film-temperature\"\nat_most = \"95 degC\"\n\n[[constraints]]\nquantity = \"max-film-pressure\"";
+    let report = found(&crate::common::main_study(&[
+        ("[oil]", &with),
+        ("at_least = \"3 um\"", "at_least = \"2 um\""),
+        ("[[constraints]]\nquantity = \"max-film-pressure\"", hot),
+    ]));
+    let limit = report.constraints.iter().find(|c| c.quantity == "film-temperature").unwrap();
+    let rows = &report.gradient.as_ref().unwrap().rows;
+    let row = rows.iter().find(|r| r.quantity == "film-temperature").unwrap();
+    let by = |name: &str| row.values[row.parameters.iter().position(|p| p == name).unwrap()];
+    let scatter = [
+        3.0 * by("big_end.diametral_clearance"),
+        0.2 * by("big_end.supply.pressure"),
+        by("oil.inlet_temperature"),
+    ];
+    let deviation = scatter.iter().map(|s| s * s).sum::<f64>().sqrt();
+    assert!((limit.margin.unwrap() / (3.0 * deviation) - 1.0).abs() < 1e-6, "{limit:?} {deviation}");
+    let robust = report.robust.unwrap();
+    let sampled = robust.limits.iter().find(|l| l.quantity == "film-temperature").unwrap();
+    assert!((sampled.deviation / deviation - 1.0).abs() < 1e-6 && sampled.unit == "K");
+    assert!(robust.verdict.is_none() && robust.tolerances[2].deviation_unit == "K");
+}
+
+#[test]
+fn an_option_may_change_what_is_searched() {
+    let few = "[{ name = \"big_end.diametral_clearance\", lower = \"70 um\", upper = \"180 um\" }, { name = \"big_end.width\", lower = \"45 mm\", upper = \"65 mm\" }]";
+    let list = format!(
+        "[[choices]]\nname = \"searched\"\n[[choices.options]]\nname = \"all\"\nset = {{}}\n[[choices.options]]\nname = \"few\"\nset = {{ \"parameters\" = {few} }}\n{COARSE}"
+    );
+    let report = found(&smooth_study(&[("[oil]", &list)]));
+    let runs = &report.choices.as_ref().unwrap().runs;
+    assert_eq!((runs[0].design.len(), runs[1].design.len()), (4, 2));
+    assert!(runs[0].loss_w.unwrap() < runs[1].loss_w.unwrap(), "{runs:?}");
+}
+
+#[test]
+fn sums_that_no_box_allows_are_told_by_every_method_at_once() {
+    for method in ["sqp", "augmented-lagrangian", "cobyla"] {
+        let row = format!(
+            "[optimiser]\nmethod = \"{method}\"\n[[linear_constraints]]\nterms = [{{ parameter = \"big_end.width\", factor = 1.0 }}, {{ parameter = \"big_end.diameter\", factor = -1.0 }}]\nat_least = \"0 mm\"\n{COARSE}"
+        );
+        let report = found(&smooth_study(&[("[oil]", &row)]));
+        assert_eq!(report.outcome.status, Outcome::Infeasible, "{method}");
+        assert!(report.outcome.refused[0].contains("contradict"), "{:?}", report.outcome);
+        let l = &report.linear_constraints[0];
+        assert!(!l.met && !l.active && report.objective.saving_percent.is_none());
+        assert_eq!(l.sum, "big_end.width - big_end.diameter");
+    }
+}

@@ -15,6 +15,7 @@ struct Point {
     rate: Vec<f64>,
     input: FilmInput,
     shape_m: Vec<f64>,
+    marks: Vec<f64>,
 }
 
 /// An input of the sizes of a bearing; only tilted films see the tilt.
@@ -47,6 +48,7 @@ impl Point {
             rate: (0..n).map(|k| 1e-3 * number(3 * k + 1)).collect(),
             input: input(x, case.tilted()),
             shape_m: if case.shaped { (0..n).map(shape).collect() } else { Vec::new() },
+            marks: (0..n).map(|k| ((k % 7) as f64 - 2.0) / 3.0).collect(),
         }
     }
 
@@ -68,11 +70,12 @@ impl Point {
             rate: add(&self.rate, &d.rate),
             input: self.input.moved(&d.input, t),
             shape_m: add(&self.shape_m, &d.shape_m),
+            marks: self.marks.clone(),
         }
     }
 
     fn site(&self, journal_angle_rad: f64) -> FilmSite<'_> {
-        FilmSite { input: self.input, shape_m: &self.shape_m, journal_angle_rad }
+        FilmSite { input: self.input, shape_m: &self.shape_m, journal_angle_rad, marks: &self.marks }
     }
 
     fn change(&self) -> FilmChange<'_> {

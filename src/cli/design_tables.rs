@@ -15,7 +15,11 @@ pub(super) fn design_tables(report: &Report) -> String {
 fn sums(report: &Report) -> Option<String> {
     let mut rows = table(&["sum", "value", "limit", "unit", "state", "price [W/unit]"]);
     for l in &report.linear_constraints {
-        let state = if l.active { "active" } else { "" };
+        let state = match (l.met, l.active) {
+            (false, _) => "violated",
+            (true, true) => "active",
+            (true, false) => "",
+        };
         let price = l.price_w_per_unit.filter(|_| l.active).map(short).unwrap_or_default();
         let limit = format!("{} {}", l.sense, short(l.limit));
         rows.add_row([l.sum.clone(), short(l.value), limit, l.unit.clone(), state.to_owned(), price]);
@@ -56,17 +60,26 @@ fn margins(report: &Report) -> Option<String> {
             share(l.broken_percent),
         ]);
     }
-    let (sigmas, drawn) = (short(r.sigmas), r.samples - r.failed);
-    let words = format!("margins of {sigmas} standard deviations, checked with {drawn} bearings drawn");
-    let failed =
-        if r.failed > 0 { format!(", {} more could not be simulated", r.failed) } else { String::new() };
-    Some(format!("{rows}\n{words}{failed}"))
+    let mut words = format!(
+        "margins of {} standard deviation(s): {} W with its margin is what was minimised",
+        short(r.sigmas),
+        short(r.robust_w)
+    );
+    if let Some(verdict) = &r.verdict {
+        words += &format!("\n{} bearings drawn", r.samples - r.failed);
+        if r.failed > 0 {
+            words += &format!(", {} more could not be simulated and count among those beyond", r.failed);
+        }
+        words += &format!(": {verdict}");
+    }
+    Some(format!("{rows}\n{words}"))
 }
 
 fn choices(report: &Report) -> Option<String> {
     let c = report.choices.as_ref()?;
     let names: Vec<&str> = c.taken.iter().map(|t| t.name.as_str()).collect();
-    let mut rows = table(&[&names.join(", "), "outcome", "loss [W]", "violation", "simulations"]);
+    let loss = if report.robust.is_some() { "loss with margin [W]" } else { "loss [W]" };
+    let mut rows = table(&[&names.join(", "), "outcome", loss, "violation", "simulations"]);
     for r in &c.runs {
         rows.add_row([
             r.options.join(", "),

@@ -68,7 +68,7 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
             },
             short(start.total_w),
             short(optimum.total_w),
-            report.objective.saving_percent.map_or_else(String::new, |s| format!(", {} % saved", short(s)))
+            saving(report)
         );
     }
     text += &format!(
@@ -104,7 +104,8 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
             );
         }
         for (k, o) in starts.optima.iter().enumerate().filter(|_| !flat) {
-            text += &format!("optimum {}: {} W, found by {}\n", k + 1, short(o.loss_w), o.found);
+            let margin = if report.robust.is_some() { " with margin" } else { "" };
+            text += &format!("optimum {}: {} W{margin}, found by {}\n", k + 1, short(o.loss_w), o.found);
         }
     }
     if let Some(front) = &report.pareto {
@@ -121,6 +122,22 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
         text += &format!("\n{}\n", rivals(report));
     }
     text
+}
+
+/// The saving in words; what a start that breaks its limits loses is no measure.
+fn saving(report: &Report) -> String {
+    let broken = report.objective.start_violation.filter(|v| *v > 1e-6);
+    let percent = report.objective.saving_percent;
+    match (percent, broken) {
+        (Some(s), None) if s >= 0.0 => format!(", {} % saved", short(s)),
+        (Some(s), None) => format!(", {} % more", short(-s)),
+        (Some(s), Some(v)) => {
+            let change =
+                if s >= 0.0 { format!("{} % less", short(s)) } else { format!("{} % more", short(-s)) };
+            format!(", {change} than a start that breaks its limits by {} %", short(100.0 * v))
+        }
+        (None, _) => String::new(),
+    }
 }
 
 /// A word of the report's format as one reads it.
@@ -167,7 +184,12 @@ fn rivals(report: &Report) -> Table {
 }
 
 fn limits(report: &Report) -> Table {
-    let mut limits = table(&["limit", "bearing, point", "value", "limit", "unit", "state", "price [W/unit]"]);
+    let margins = report.robust.is_some();
+    let mut head = vec!["limit", "bearing, point", "value", "limit", "unit", "state", "price [W/unit]"];
+    if margins {
+        head.insert(4, "margin");
+    }
+    let mut limits = table(&head);
     for c in &report.constraints {
         let state = match (c.met, c.active) {
             _ if c.value.is_none() => "not known",
@@ -175,7 +197,7 @@ fn limits(report: &Report) -> Table {
             (true, true) => "active",
             (true, false) => "",
         };
-        limits.add_row([
+        let mut row = vec![
             c.quantity.clone(),
             format!("{}, {}", c.bearing, c.operating_point),
             maybe(c.value),
@@ -183,7 +205,11 @@ fn limits(report: &Report) -> Table {
             c.unit.clone(),
             state.to_owned(),
             c.price_w_per_unit.filter(|_| c.active).map(short).unwrap_or_default(),
-        ]);
+        ];
+        if margins {
+            row.insert(4, maybe(c.margin));
+        }
+        limits.add_row(row);
     }
     limits
 }

@@ -249,6 +249,11 @@ impl Cotangent<'_> {
             bar.contact += rubbing * s.speed * area;
             self.scalars.speed += rubbing * cell.contact.v * area;
             area_bar += rubbing * cell.contact.v * s.speed;
+            if let Some(mark) = self.place.site.marks.get(k) {
+                let marked = w.rubbing_w_m2 * mark * sign;
+                bar.contact += marked * s.speed;
+                self.scalars.speed += marked * cell.contact.v;
+            }
         }
         self.scalars.dx += area_bar * s.dz;
         self.scalars.dz += area_bar * s.dx;

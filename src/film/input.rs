@@ -3,7 +3,7 @@
 /// Number of scalars in a [`FilmInput`].
 pub const INPUTS: usize = 14;
 /// Number of scalars in a [`FilmOutput`].
-pub const OUTPUTS: usize = 11;
+pub const OUTPUTS: usize = 12;
 
 /// Everything the film depends on at one instant, apart from the shape of its surfaces; the same shape carries changes
 /// and derivatives of these quantities.
@@ -54,6 +54,8 @@ pub struct FilmOutput {
     pub contact_peak_pa: f64,
     /// Net flow of oil out of both edges, m3/s.
     pub side_flow_m3_s: f64,
+    /// Contact pressure times sliding speed, W/m2, summed over the cells with the site's marks as weights.
+    pub rubbing_w_m2: f64,
 }
 
 impl FilmInput {
@@ -149,6 +151,7 @@ impl FilmOutput {
             self.pressure_peak_pa,
             self.contact_peak_pa,
             self.side_flow_m3_s,
+            self.rubbing_w_m2,
         ]
     }
 
@@ -164,6 +167,7 @@ impl FilmOutput {
             pressure_peak_pa: a[8],
             contact_peak_pa: a[9],
             side_flow_m3_s: a[10],
+            rubbing_w_m2: a[11],
         }
     }
 
@@ -172,7 +176,7 @@ impl FilmOutput {
         [self.force_n[0], self.force_n[1], self.moment_n_m[0], self.moment_n_m[1]]
     }
 
-    /// The integrals over the bearing, multiplied; extrema stay.
+    /// The integrals over the bearing, multiplied; extrema and sums over cells stay.
     pub(super) fn integrals_times(mut self, copies: f64) -> Self {
         self.force_n = self.force_n.map(|f| f * copies);
         self.moment_n_m = self.moment_n_m.map(|f| f * copies);

@@ -3,7 +3,8 @@
 //! ```text
 //! load_i = Int (p + p_contact) dh/dx_i dA                      against eccentricity and tilt
 //! loss   = Int k U^2 fill dA + Int U w/2 dp/dx dA              wall power on the journal
-//! contact loss = Int mu p_contact |U| dA,   dissipation = Int k U^2 fill dA + sum G (p_a - p_b)^2
+//! contact loss = Int mu p_contact |U| dA,   rubbing = sum over cells of mark p_contact |U|
+//! dissipation = Int k U^2 fill dA + sum G (p_a - p_b)^2
 //! ```
 
 use super::cavitation::{Cavitation, CavityShear};
@@ -74,6 +75,9 @@ impl Reynolds {
                 let sheared = self.sheared(self.cavitation.split(q).fill).0;
                 y.loss_w += cell.shear.v * s.speed * s.speed * area * sheared;
                 y.contact_loss_w += friction * cell.contact.v * s.speed.abs() * area;
+                if let Some(mark) = site.marks.get(i * self.mesh.n_z + j) {
+                    y.rubbing_w_m2 += mark * cell.contact.v * s.speed.abs();
+                }
             }
         }
         y.dissipation_w = y.loss_w;

@@ -60,11 +60,13 @@ pub struct FilmSite<'a> {
     pub shape_m: &'a [f64],
     /// How far the journal has turned, rad: where its openings stand. Not differentiated.
     pub journal_angle_rad: f64,
+    /// Weight of each cell in [`FilmOutput::rubbing_w_m2`]; empty for none. Not differentiated.
+    pub marks: &'a [f64],
 }
 
 impl From<FilmInput> for FilmSite<'static> {
     fn from(input: FilmInput) -> Self {
-        Self { input, shape_m: &[], journal_angle_rad: 0.0 }
+        Self { input, shape_m: &[], journal_angle_rad: 0.0, marks: &[] }
     }
 }
 
@@ -220,6 +222,9 @@ pub trait FilmModel: Send + Sync {
 
     /// Largest contact pressure, exact on the mesh, Pa.
     fn contact_max_pa(&self, site: &FilmSite, q: &[f64]) -> f64;
+
+    /// Writes the contact pressure of every cell, Pa; nothing for a film without cells.
+    fn contact_pa(&self, site: &FilmSite, contact: &mut [f64]);
 
     /// Whether the oil in the cavity is kept account of.
     fn conserves_mass(&self) -> bool;

@@ -107,6 +107,13 @@ impl FilmModel for Reynolds {
         self.contact_peak(&self.evaluate(site, q, true).1).exact()
     }
 
+    fn contact_pa(&self, site: &FilmSite, contact: &mut [f64]) {
+        // Gaps alone decide on contact.
+        let q = vec![0.0; contact.len()];
+        let cells = self.evaluate(site, &q, false).1;
+        contact.iter_mut().zip(&cells).for_each(|(p, cell)| *p = cell.contact.v);
+    }
+
     fn conserves_mass(&self) -> bool {
         self.cavitation == Cavitation::MassConserving
     }

@@ -356,6 +356,8 @@ impl FilmModel for ShortFilm {
         0.0
     }
 
+    fn contact_pa(&self, _: &FilmSite, _: &mut [f64]) {}
+
     fn conserves_mass(&self) -> bool {
         false
     }

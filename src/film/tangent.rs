@@ -167,6 +167,9 @@ impl Tangent<'_> {
                 + by_fill * self.moved.fill[k] * power * s.speed * area;
             let pressing = cell.contact.v * (d.speed * area + s.speed * d_area);
             y.contact_loss_w += friction * sign * (self.moved.contact[k] * s.speed * area + pressing);
+            if let Some(mark) = self.place.site.marks.get(k) {
+                y.rubbing_w_m2 += mark * sign * (self.moved.contact[k] * s.speed + cell.contact.v * d.speed);
+            }
         }
         y.dissipation_w = y.loss_w;
         film.for_faces(|face| {

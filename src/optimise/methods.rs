@@ -5,6 +5,7 @@
 
 use super::linear::Softened;
 use super::minimum::Minimum;
+use super::problem::Scaled;
 use super::sqp::{SqpOptions, minimise};
 use super::{
     ConstrainedProblem, EvaluationError, LinearConstraint, Outcome, Slopes, Values, cobyla, lagrangian,
@@ -12,7 +13,9 @@ use super::{
 use crate::run::IterationEvent;
 use argmin::core::Error;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::collections::HashSet;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// How the next design is found.
@@ -42,7 +45,7 @@ impl Method {
 /// What a search may cost; none for no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Budget {
-    /// Designs simulated at most.
+    /// Different designs simulated at most; what gradients simulate beside them does not count.
     pub simulations: Option<u64>,
     /// Wall time, s. A search that ends by it does not end at the same design twice.
     pub seconds: Option<f64>,
@@ -72,10 +75,17 @@ pub fn search<P: ConstrainedProblem + ?Sized>(
         problem,
         budget: options.budget,
         began: Instant::now(),
-        asked: AtomicU64::new(0),
+        asked: Mutex::default(),
         spent: AtomicBool::new(false),
     };
     let softened = || Softened::new(&watched, start);
+    if options.method != Method::Sqp && !problem.linear().is_empty() {
+        // Methods that do not hold the rows would search long for what does not exist.
+        let scaled = Scaled::new(problem, start);
+        if let Err(end) = scaled.allowed(start) {
+            return Ok(*end);
+        }
+    }
     let mut end = match options.method {
         Method::Sqp => minimise(&watched, start, options.settings)?,
         Method::AugmentedLagrangian => {
@@ -98,7 +108,8 @@ struct Watched<'p, P: ?Sized> {
     problem: &'p P,
     budget: Budget,
     began: Instant,
-    asked: AtomicU64,
+    /// Designs that were asked for; asking again costs nothing.
+    asked: Mutex<HashSet<Vec<u64>>>,
     spent: AtomicBool,
 }
 
@@ -108,12 +119,16 @@ impl<P: ConstrainedProblem + ?Sized> ConstrainedProblem for Watched<'_, P> {
     }
 
     fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
-        let asked = self.asked.fetch_add(1, Ordering::Relaxed);
+        let design: Vec<u64> = x.iter().map(|v| v.to_bits()).collect();
+        let mut asked = self.asked.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let late = self.budget.seconds.is_some_and(|s| self.began.elapsed().as_secs_f64() > s);
-        if late || self.budget.simulations.is_some_and(|most| asked >= most) {
+        let spent = self.budget.simulations.is_some_and(|most| asked.len() as u64 >= most);
+        if late || (spent && !asked.contains(&design)) {
             self.spent.store(true, Ordering::Relaxed);
             return Err(EvaluationError::Cancelled);
         }
+        asked.insert(design);
+        drop(asked);
         self.problem.values(x)
     }
 

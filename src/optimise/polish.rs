@@ -6,7 +6,8 @@
 //!
 //! `H` is the Hessian of the Lagrangian along those directions, one product each ([`Curved`]); active are the bounds, linear and
 //! other constraints that the search ended at. Multipliers are those of least squares. A step is kept if the KKT residual, which counts
-//! what is missed of constraints too, falls. Near a solution that is strict and keeps
+//! what is missed of constraints too, falls. In the end the point is kept if its residual is below that of the search: at a kink, where the search judges by a
+//! combination of gradients, it is not. Near a solution that is strict and keeps
 //! its active rows, the residual falls quadratically. Deliberately not here: finding the active rows, which is the search's task.
 
 use super::minimum::Minimum;
@@ -66,6 +67,7 @@ pub fn polish<P: ConstrainedProblem + Curved + ?Sized>(
     if end.values.is_none() {
         return Ok(done);
     }
+    let before = end.clone();
     let mut scaled = Scaled::new(problem, &end.x);
     let start = scaled.to_scaled(&end.x);
     scaled.scale_objective(&start)?;
@@ -73,20 +75,18 @@ pub fn polish<P: ConstrainedProblem + Curved + ?Sized>(
     let mut values = scaled.values(&start)?;
     let mut slopes = scaled.of(problem.slopes(&x)?);
     let mut prices = end.multipliers.clone();
-    while done.steps < STEPS {
+    loop {
         let s = scaled.to_scaled(&x);
         let held = held(&scaled, &s, &values, &slopes, &prices);
         let fitted = fit(&held, &slopes);
         let lagrangian = |slopes: &Slopes| gradient(slopes, &held, &fitted);
         let residual = residual(&held, &fitted, &slopes, &values);
-        if done.steps == 0 {
-            done.kkt.0 = residual.min(end.kkt);
-        }
-        if residual < end.kkt {
+        // A kept step brought the point here: what is known of it belongs to it.
+        if residual < end.kkt || done.steps > 0 {
             (end.kkt, end.combined) = (residual, 1);
             end.multipliers = restored(&scaled, &held, &fitted, &values, s.len());
         }
-        if residual <= tolerance {
+        if residual <= tolerance || done.steps >= STEPS {
             break;
         }
         let free = free_directions(&held, s.len());
@@ -102,10 +102,18 @@ pub fn polish<P: ConstrainedProblem + Curved + ?Sized>(
         let to: Vec<f64> =
             (0..s.len()).map(|j| (s[j] + step[j]).clamp(scaled.lower[j], scaled.upper[j])).collect();
         let next = scaled.to_true(&to);
-        let there = scaled.values(&to)?;
+        let there = scaled.values(&to);
         end.evaluations += 1;
-        let new_slopes = scaled.of(problem.slopes(&next)?);
+        let found = there.and_then(|there| Ok((there, scaled.of(problem.slopes(&next)?))));
         end.gradients += 1;
+        let (there, new_slopes) = match found {
+            Ok(found) => found,
+            Err(EvaluationError::Cancelled) => return Err(EvaluationError::Cancelled),
+            Err(EvaluationError::Failed(reason)) => {
+                end.failures.push(reason);
+                break;
+            }
+        };
         let new_held = self::held(&scaled, &to, &there, &new_slopes, &prices);
         let new_fit = fit(&new_held, &new_slopes);
         let better = self::residual(&new_held, &new_fit, &new_slopes, &there) < residual;
@@ -117,6 +125,11 @@ pub fn polish<P: ConstrainedProblem + Curved + ?Sized>(
         (x, values, slopes) = (next, there, new_slopes);
         end.x = x.clone();
         end.values = Some(Values { objective: values.objective * scaled.objective_scale, ..values.clone() });
+    }
+    if end.kkt > before.kkt {
+        let (evaluations, gradients) = (end.evaluations, end.gradients);
+        *end = Minimum { evaluations, gradients, ..before };
+        done.steps = 0;
     }
     done.kkt.1 = end.kkt;
     Ok(done)

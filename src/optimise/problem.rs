@@ -1,6 +1,8 @@
 //! The abilities a problem needs to be optimised, and its form in scaled variables.
 
-use super::LinearConstraint;
+use super::linear::nearest;
+use super::minimum::Ended;
+use super::{LinearConstraint, Minimum, Outcome};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -134,6 +136,15 @@ impl<'p, P: ConstrainedProblem + ?Sized> Scaled<'p, P> {
     pub fn to_true(&self, s: &[f64]) -> Vec<f64> {
         let (low, high) = self.problem.bounds();
         (0..s.len()).map(|j| (self.origin[j] + s[j] * self.width[j]).clamp(low[j], high[j])).collect()
+    }
+
+    /// The allowed point nearest to a true one, in scaled variables; the end of a search that has none.
+    pub fn allowed(&self, start: &[f64]) -> Result<Vec<f64>, Box<Minimum>> {
+        let s = self.to_scaled(start);
+        nearest(&s, &self.linear, &self.lower, &self.upper).ok_or_else(|| {
+            let reason = "the linear constraints and the bounds contradict each other";
+            Box::new(Ended::at_start(Outcome::Infeasible, s, reason).restored(self))
+        })
     }
 
     /// The linear constraints for steps from a point.

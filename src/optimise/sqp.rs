@@ -11,7 +11,6 @@
 
 use super::bundle;
 use super::kkt::{kkt_residual, lagrangian};
-use super::linear::nearest;
 use super::minimum::{Ended, Incumbent, Minimum};
 use super::problem::Scaled;
 use super::qp::{Qp, QpSolution};
@@ -69,10 +68,9 @@ pub fn minimise<P: ConstrainedProblem + ?Sized>(
     options: SqpOptions,
 ) -> Result<Minimum, Error> {
     let mut scaled = Scaled::new(problem, start);
-    let s = scaled.to_scaled(start);
-    let Some(s) = nearest(&s, &scaled.linear, &scaled.lower, &scaled.upper) else {
-        let reason = "the linear constraints and the bounds contradict each other";
-        return Ok(Ended::at_start(Outcome::Infeasible, s, reason).restored(&scaled));
+    let s = match scaled.allowed(start) {
+        Ok(s) => s,
+        Err(end) => return Ok(*end),
     };
     // A start that cannot be evaluated is told by the search itself.
     let _ = scaled.scale_objective(&s);

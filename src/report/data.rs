@@ -132,6 +132,8 @@ pub struct ObjectiveReport {
     pub start: Option<Loss>,
     /// At the design found.
     pub optimum: Option<Loss>,
+    /// Largest relative violation of a limit by the start design, margins included.
+    pub start_violation: Option<f64>,
     /// Saving relative to the start, percent.
     pub saving_percent: Option<f64>,
     /// Bearings and operating points.
@@ -372,6 +374,8 @@ pub struct Provenance {
     pub version: String,
     /// Laws and methods used, with their sources.
     pub methods: Vec<String>,
+    /// Hash of the study in whose report the starts were found; none if they are the study's own.
+    pub started_from: Option<String>,
     /// The study with every default written out.
     pub study: serde_json::Value,
 }

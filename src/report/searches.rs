@@ -145,6 +145,8 @@ pub struct RobustReport {
     pub above_percent: Option<f64>,
     /// The limits.
     pub limits: Vec<SampledLimit>,
+    /// Whether what was drawn bears out the first order, in words; none without samples.
+    pub verdict: Option<String>,
 }
 
 /// A quantity that scatters.
@@ -156,8 +158,10 @@ pub struct ToleranceReport {
     pub nominal: f64,
     /// Its standard deviation.
     pub deviation: f64,
-    /// Unit of both (a deviation in degC is one in K).
+    /// Unit of the value.
     pub unit: String,
+    /// Unit of the deviation.
+    pub deviation_unit: String,
 }
 
 /// How a limited quantity scatters.
@@ -194,6 +198,8 @@ pub struct LinearReport {
     pub unit: String,
     /// Whether it holds the design back.
     pub active: bool,
+    /// Whether it is kept.
+    pub met: bool,
     /// What one unit more of room would save, W; none where no optimum was reached.
     pub price_w_per_unit: Option<f64>,
 }
@@ -226,7 +232,7 @@ pub struct ParetoReport {
     pub parameters: Vec<String>,
     /// Their units.
     pub units: Vec<String>,
-    /// One entry per limit, rising.
+    /// One entry per limit, from the easiest to the hardest.
     pub points: Vec<ParetoPoint>,
 }
 

@@ -4,7 +4,7 @@ use super::build::Plan;
 use super::check::Study;
 use super::observe;
 use super::searches::Searched;
-use crate::optimise::{ConstrainedProblem, Evaluated, Minimum, Outcome};
+use crate::optimise::{ConstrainedProblem, Evaluated, ManyObjectives, Outcome};
 use crate::report::{AtBound, CaseLoss, DesignValue, ObjectiveReport, WorstCaseReport};
 use crate::units::tidy;
 use std::sync::Arc;
@@ -46,12 +46,21 @@ pub(super) fn design(study: &Study, x: &[f64]) -> Vec<DesignValue> {
 }
 
 /// What a little more of each parameter, or of room for it, does to the loss.
-pub(super) fn price_parameters(study: &Study, plan: &Plan, minimum: &Minimum, design: &mut [DesignValue]) {
-    let Ok(slopes) = plan.problem.slopes(&minimum.x) else { return };
+pub(super) fn price_parameters(study: &Study, found: &Searched, design: &mut [DesignValue]) {
+    let (plan, minimum) = (&found.plan, &found.minimum);
+    let slopes = match found.shares.is_empty() {
+        true => plan.problem.slopes(&minimum.x).map(|s| s.objective),
+        // What the largest loss does, as far as each operating point has a share in it.
+        false => plan.problem.objective_slopes(&minimum.x).map(|parts| {
+            let sum = |j: usize| parts.iter().zip(&found.shares).map(|(row, share)| share * row[j]).sum();
+            (0..minimum.x.len()).map(sum).collect()
+        }),
+    };
+    let Ok(slopes) = slopes else { return };
     let optimal = matches!(minimum.outcome, Outcome::Converged | Outcome::AlmostConverged);
     for (j, (d, p)) in design.iter_mut().zip(&study.parameters).enumerate() {
         let width = p.upper - p.lower;
-        d.effect_w_per_percent = Some(0.01 * width * slopes.objective[j]);
+        d.effect_w_per_percent = Some(0.01 * width * slopes[j]);
         let price = match d.at_bound {
             AtBound::No => None,
             AtBound::Lower => minimum.multipliers.lower.get(j),
@@ -59,6 +68,16 @@ pub(super) fn price_parameters(study: &Study, plan: &Plan, minimum: &Minimum, de
         };
         d.bound_price_w_per_unit = price.filter(|_| optimal).map(|m| m / width * p.variable.scale.0);
     }
+}
+
+/// Largest relative violation of any limit by the start design, margins included.
+fn start_violation(study: &Study, plan: &Plan) -> Option<f64> {
+    let values = match &study.robust {
+        Some(robust) => robust.problem(plan).values(&plan.start),
+        None => plan.problem.values(&plan.start),
+    };
+    let beyond = study.linear.iter().map(|l| l.excess(&plan.start) / l.room(&study.parameters));
+    values.ok().map(|v| beyond.fold(v.violation(), f64::max))
 }
 
 /// What is minimised.
@@ -101,6 +120,7 @@ pub(super) fn objective(study: &Study, found: &Searched, known: &Known) -> Objec
     });
     ObjectiveReport {
         quantity: objective_words(study),
+        start_violation: start_violation(study, plan),
         start,
         optimum: Some(optimum),
         saving_percent: start.map(|s| 100.0 * (1.0 - optimum.total_w / s.total_w)),

@@ -2,7 +2,7 @@
 
 use super::bearings::{Bearings, Frame};
 use super::characteristic::CharacteristicPlan;
-use super::choices::{Choices, choices};
+use super::choices::{self, Choices, List};
 use super::comparison::ComparisonPlan;
 use super::document::{Format, parse};
 use super::faults::{Fault, Faults, StudyErrors, line_of, without_nulls};
@@ -67,6 +67,8 @@ pub struct Study {
     pub(super) worst_case: bool,
     pub(super) robust: Option<RobustPlan>,
     pub(super) choices: Option<Choices>,
+    /// Hash of the study whose design the starts are.
+    pub(super) started_from: Option<String>,
     pub(super) cylinder: Option<Cylinder>,
     pub(super) vee: Option<VeeEngine>,
 }
@@ -85,10 +87,13 @@ impl Study {
         })?;
         let mut faults = Faults::of(value.clone());
         let study = match StudyFile::deserialize(value.clone()) {
-            Ok(file) => check(file, base, &mut faults).map(|study| {
-                let choices = choices(&study.file, &value, base, &mut faults);
-                Self { choices, ..study }
-            }),
+            Ok(file) => {
+                let lists: Vec<List> = choices::lists(&file, &mut faults);
+                check(file, base, &mut faults).map(|study| {
+                    let choices = choices::choices(lists, &value, base, &mut faults);
+                    Self { choices, ..study }
+                })
+            }
             Err(e) => {
                 faults.add("", format!("the file must be a table of sections ({e})"));
                 None
@@ -197,6 +202,7 @@ pub(super) fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Fault
         worst_case,
         robust,
         choices: None,
+        started_from: None,
         film: film?,
         orbit: orbit?,
         oil: oil?,

@@ -26,36 +26,49 @@ pub(super) struct Choices {
 }
 
 /// A choice as written, checked by itself.
-struct List {
+pub(super) struct List {
     name: String,
     options: Vec<(String, Vec<(String, Value)>)>,
 }
 
-/// The variants of a study, if it has choices; `raw` is the study as written.
-pub(super) fn choices(
-    file: &StudyFile,
-    raw: &Value,
-    base: Option<&Path>,
-    faults: &mut Faults,
-) -> Option<Choices> {
-    let list = faults.get(&file.choices, PATH)?;
-    if list.is_empty() {
-        return None;
-    }
+/// The choices as written; mistakes are told whatever else is wrong.
+pub(super) fn lists(file: &StudyFile, faults: &mut Faults) -> Vec<List> {
+    let given = faults.get(&file.choices, PATH).unwrap_or_default();
     let mut lists: Vec<List> = Vec::new();
-    for (i, given) in list.iter().enumerate() {
+    for (i, given) in given.iter().enumerate() {
         let path = format!("{PATH}[{i}]");
-        if let Some(choice) = faults.get(given, &path) {
-            lists.extend(one(&choice, &path, raw, faults));
+        let Some(choice) = faults.get(given, &path) else { continue };
+        let Some(list) = one(&choice, &path, faults) else { continue };
+        let keys = |l: &List| -> Vec<String> {
+            l.options.iter().flat_map(|(_, set)| set.iter().map(|(key, _)| key.clone())).collect()
+        };
+        if lists.iter().any(|other| other.name == list.name) {
+            faults.add(&join(&path, "name"), "stands twice");
         }
+        let earlier: Vec<String> = lists.iter().flat_map(keys).collect();
+        if let Some(twice) = keys(&list).iter().find(|key| earlier.contains(key)) {
+            faults.add(&join(&path, "options"), format!("\"{twice}\" is set by an earlier choice already"));
+        }
+        lists.push(list);
     }
     let count = lists.iter().map(|l| l.options.len()).product::<usize>();
     if count > MOST {
         faults.add(PATH, format!("have {count} combinations; at most {MOST} are searched"));
     }
-    if faults.any() {
+    lists
+}
+
+/// The variants of a study with choices; `raw` is the study as written.
+pub(super) fn choices(
+    lists: Vec<List>,
+    raw: &Value,
+    base: Option<&Path>,
+    faults: &mut Faults,
+) -> Option<Choices> {
+    if lists.is_empty() || faults.any() {
         return None;
     }
+    let count = lists.iter().map(|l| l.options.len()).product::<usize>();
     let mut variants = Vec::new();
     for k in 0..count {
         let picks = picks(&lists, k);
@@ -65,7 +78,7 @@ pub(super) fn choices(
     Some(Choices { lists: lists.into_iter().map(names).collect(), variants })
 }
 
-fn one(choice: &ChoiceFile, path: &str, raw: &Value, faults: &mut Faults) -> Option<List> {
+fn one(choice: &ChoiceFile, path: &str, faults: &mut Faults) -> Option<List> {
     faults.unknown::<ChoiceFile>(&choice.unknown, path);
     let name = faults.need(&choice.name, &join(path, "name"));
     let at = join(path, "options");
@@ -84,10 +97,8 @@ fn one(choice: &ChoiceFile, path: &str, raw: &Value, faults: &mut Faults) -> Opt
             faults.add(&join(&at, "name"), "stands twice");
         }
         for key in set.keys() {
-            if key == PATH || key.starts_with("choices[") || put(&mut raw.clone(), key, Value::Null).is_none()
-            {
-                let words = format!("there is no place '{key}' in this study");
-                faults.add(&join(&at, "set"), words);
+            if key == PATH || key.starts_with("choices[") || key.starts_with("choices.") {
+                faults.add(&join(&at, "set"), "a choice cannot set choices");
             }
         }
         options.push((name.unwrap_or_default(), set.into_iter().collect()));
@@ -115,32 +126,50 @@ fn variant(
     if let Some(map) = value.as_object_mut() {
         map.remove(PATH);
     }
-    for (list, pick) in lists.iter().zip(picks) {
+    let at = |c: usize| format!("{PATH}[{c}].options[{}]", picks[c]);
+    for (c, (list, pick)) in lists.iter().zip(picks).enumerate() {
         for (key, to) in &list.options[*pick].1 {
-            put(&mut value, key, to.clone());
+            if put(&mut value, key, to.clone()).is_none() {
+                faults.add(&join(&at(c), "set"), format!("there is no place '{key}' in this study"));
+                return None;
+            }
         }
     }
     let mut own = Faults::of(value.clone());
     let study = StudyFile::deserialize(value).ok().and_then(|file| check(file, base, &mut own));
     let taken: Vec<&str> = lists.iter().zip(picks).map(|(l, p)| l.options[*p].0.as_str()).collect();
+    // At the option that sets the key, or a key above it, if one does.
+    let guilty = |path: &str| {
+        let sets =
+            |c: &usize| lists[*c].options[picks[*c]].1.iter().any(|(key, _)| path.starts_with(key.as_str()));
+        (0..lists.len()).find(sets).map_or_else(|| PATH.to_owned(), at)
+    };
     for (path, message) in own.into_list() {
-        faults.add(PATH, format!("with \"{}\": {path}: {message}", taken.join("\", \"")));
+        faults.add(&guilty(&path), format!("with \"{}\": {path}: {message}", taken.join("\", \"")));
     }
     study
 }
 
-/// Puts a value at a path; the place of its last key must exist, the key itself need not.
+/// Puts a value at a path. Sections on the way that are not written are made; lists must be long enough.
 fn put(root: &mut Value, path: &str, value: Value) -> Option<()> {
     let pointer = pointer(path);
-    let (place, key) = pointer.rsplit_once('/')?;
-    match root.pointer_mut(place)? {
-        Value::Object(map) => {
-            map.insert(key.to_owned(), value);
+    let mut at = root;
+    let mut keys = pointer.split('/').skip(1).peekable();
+    while let Some(key) = keys.next() {
+        if at.is_null() {
+            *at = Value::Object(serde_json::Map::new());
         }
-        Value::Array(list) => *list.get_mut(key.parse::<usize>().ok()?)? = value,
-        _ => return None,
+        at = match at {
+            Value::Object(map) => map.entry(key).or_insert(Value::Null),
+            Value::Array(list) => list.get_mut(key.parse::<usize>().ok()?)?,
+            _ => return None,
+        };
+        if keys.peek().is_none() {
+            *at = value;
+            return Some(());
+        }
     }
-    Some(())
+    None
 }
 
 /// Searches every combination; returns the study that won with what was found, and the table.
@@ -160,7 +189,7 @@ pub(super) fn choose<'r, 's>(
         let names = names(choices, picks);
         let name = format!("choice {} of {}: {}", k + 1, choices.variants.len(), names.join(", "));
         context.progress.tell(&Event::Stage { name });
-        let from = best.as_ref().map(|(_, found)| found.minimum.x.clone());
+        let from = best.as_ref().map(|(j, found)| beside(&choices.variants[*j].1, &found.minimum.x, study));
         let found = match searches(study, from.as_deref(), &format!("choice-{k}-"), context, store) {
             Ok(found) => found,
             Err(e) => {
@@ -202,6 +231,15 @@ pub(super) fn choose<'r, 's>(
     Ok((study, found, report))
 }
 
+/// A start for one study from the design of another: parameters of the same name, moved into the box; the others from their own start.
+fn beside(other: &Study, x: &[f64], study: &Study) -> Vec<f64> {
+    let of = |p: &super::ParameterPlan| {
+        let known = other.parameters.iter().position(|o| o.name == p.name);
+        known.map_or(p.start, |j| x[j].clamp(p.lower, p.upper))
+    };
+    study.parameters.iter().map(of).collect()
+}
+
 fn names(choices: &Choices, picks: &[usize]) -> Vec<String> {
     choices.lists.iter().zip(picks).map(|((_, options), p)| options[*p].clone()).collect()
 }
@@ -224,7 +262,8 @@ fn run(study: &Study, options: Vec<String>, found: &Searched) -> ChoiceRun {
         status: end.outcome,
         loss_w: end.values.as_ref().map(|v| v.objective),
         violation: end.values.as_ref().map(|v| v.violation()),
-        simulations: found.plan.problem.costs().0.simulations / found.plan.cases.len() as u64,
+        simulations: (found.plan.problem.costs().0 + found.others.0).simulations
+            / found.plan.cases.len() as u64,
         design: end.x.iter().zip(&study.parameters).map(|(x, p)| p.variable.shown(*x)).collect(),
     }
 }

@@ -91,7 +91,7 @@ pub(super) fn constraints(
             value: Some(c.quantity.shown(value)),
             exact_value: Some(exact_value),
             bias: Some(c.quantity.shown(value) - exact_value),
-            margin: margin.map(|m| m * c.quantity.shown(c.limit)),
+            margin: margin.map(|m| m * c.limit / scale),
             limit: tidy(c.quantity.shown(c.limit)),
             unit: unit.to_owned(),
             active,
@@ -109,15 +109,21 @@ pub(super) fn linear(study: &Study, minimum: &Minimum) -> Vec<LinearReport> {
     let row = |(k, l): (usize, &super::linear::LinearPlan)| {
         let term = |&(j, factor): &(usize, f64)| {
             let name = &study.parameters[j].name;
-            if factor == 1.0 { name.clone() } else { format!("{} * {name}", tidy(factor)) }
+            match factor {
+                1.0 => name.clone(),
+                -1.0 => format!("-{name}"),
+                _ => format!("{} * {name}", tidy(factor)),
+            }
         };
         let terms = l.terms.iter().map(term).collect::<Vec<_>>().join(" + ").replace("+ -", "- ");
         let size = l.variable.scale.0;
         let price = minimum.multipliers.linear.get(k).copied().unwrap_or(0.0);
-        let excess = ((l.value(&minimum.x) - l.limit) / study.parameters[l.terms[0].0].upper).abs();
+        let (excess, room) = (l.excess(&minimum.x), l.room(&study.parameters));
         // Below the rounding of the sub-problem nobody wants to read digits.
-        let at_limit = excess < 1e-9;
-        let active = l.sense.is_none() || (excess < ACTIVE_GAP && price * size > ACTIVE * objective);
+        let at_limit = excess.abs() < 1e-9 * room;
+        let met = excess <= study.optimiser.options.settings.tolerance.max(MET) * room;
+        let pressed = excess.abs() < ACTIVE_GAP * room && price.abs() * room > ACTIVE * objective;
+        let active = met && (l.sense.is_none() || pressed);
         LinearReport {
             sum: terms,
             sense: l.sense.map_or("equals", words).to_owned(),
@@ -125,6 +131,7 @@ pub(super) fn linear(study: &Study, minimum: &Minimum) -> Vec<LinearReport> {
             limit: tidy(l.limit / size),
             unit: l.variable.unit.to_owned(),
             active,
+            met,
             price_w_per_unit: optimal.then_some(if active { price * size } else { 0.0 }),
         }
     };

@@ -26,6 +26,22 @@ impl LinearPlan {
         self.terms.iter().map(|&(j, factor)| factor * x[j]).sum()
     }
 
+    /// How far the sum is beyond its limit; negative where there is room.
+    pub fn excess(&self, x: &[f64]) -> f64 {
+        let beyond = self.value(x) - self.limit;
+        match self.sense {
+            Some(Sense::AtMost) => beyond,
+            Some(Sense::AtLeast) => -beyond,
+            None => beyond.abs(),
+        }
+    }
+
+    /// How much the sum can change within the boxes.
+    pub fn room(&self, parameters: &[ParameterPlan]) -> f64 {
+        let width = |&(j, factor): &(usize, f64)| factor.abs() * (parameters[j].upper - parameters[j].lower);
+        self.terms.iter().map(width).sum()
+    }
+
     /// The row of a problem of `n` variables.
     pub fn row(&self, n: usize) -> LinearConstraint {
         let sign = if self.sense == Some(Sense::AtLeast) { -1.0 } else { 1.0 };

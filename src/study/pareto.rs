@@ -11,19 +11,21 @@ use super::file::{ConstraintFile, ParetoFile, StudyFile};
 use super::plans::ConstraintPlan;
 use super::searches::{FEASIBLE, Searched, resume};
 use super::seek::seek;
-use crate::optimise::{Minimum, Outcome};
+use crate::optimise::{Minimum, Outcome, Sense};
 use crate::report::{ParetoPoint, ParetoReport};
-use crate::run::{Event, RunContext, Store};
+use crate::run::{Cost, Event, RunContext, Store};
 use crate::units::tidy;
 
 const PATH: &str = "pareto";
+/// A price that is a smaller share of the loss, for all of the limit, is none.
+const PRICELESS: f64 = 1e-6;
 
 /// A checked front.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ParetoPlan {
     /// What is limited; its own limit is the first of the list.
     base: ConstraintPlan,
-    /// Limits from the smallest to the largest, SI units.
+    /// Limits from the easiest to the hardest, SI units.
     limits: Vec<f64>,
 }
 
@@ -71,6 +73,9 @@ pub(super) fn pareto(file: &StudyFile, bearings: &Bearings, faults: &mut Faults)
         }
     }
     limits.sort_by(f64::total_cmp);
+    if base.sense == Sense::AtMost {
+        limits.reverse();
+    }
     Some(ParetoPlan { base, limits })
 }
 
@@ -80,7 +85,8 @@ pub(super) fn front<'r>(
     found: &Searched<'r>,
     context: RunContext<'r>,
     store: &'r dyn Store,
-) -> Option<ParetoReport> {
+) -> Option<(ParetoReport, (Cost, Cost))> {
+    let mut cost = (Cost::default(), Cost::default());
     let wanted = study.pareto.as_ref()?;
     let (unit, _) = wanted.base.quantity.unit();
     let mut neighbour: Option<(Plan<'r>, Minimum)> = None;
@@ -104,10 +110,15 @@ pub(super) fn front<'r>(
         let Ok(end) = seek(&moved, &plan, &start, &study.optimiser.options) else { continue };
         let minimum = end.minimum;
         points.push(point(&moved, wanted, &plan, &minimum, *limit));
-        neighbour = Some((plan, minimum));
+        let (own, beyond) = plan.problem.costs();
+        cost = (cost.0 + own, cost.1 + beyond);
+        // A search that found no allowed design is no good neighbour.
+        if minimum.values.as_ref().is_some_and(|v| v.violation() <= FEASIBLE) {
+            neighbour = Some((plan, minimum));
+        }
     }
     let label = |b: usize| study.bearings[b].name.clone();
-    Some(ParetoReport {
+    let report = ParetoReport {
         quantity: wanted.base.quantity.key().to_owned(),
         bearing: wanted.base.bearing.map(label),
         sense: super::limits::words(wanted.base.sense).to_owned(),
@@ -115,7 +126,8 @@ pub(super) fn front<'r>(
         parameters: study.parameters.iter().map(|p| p.name.clone()).collect(),
         units: study.parameters.iter().map(|p| p.variable.unit.to_owned()).collect(),
         points,
-    })
+    };
+    Some((report, cost))
 }
 
 /// Whether a constraint is the one the front moves.
@@ -141,13 +153,14 @@ fn point(study: &Study, wanted: &ParetoPlan, plan: &Plan, end: &Minimum, limit: 
         .map(|(_, m)| m / limit * scale)
         .sum();
     let shown = |(x, p): (&f64, &super::ParameterPlan)| p.variable.shown(*x);
+    let loss = end.values.as_ref().map_or(0.0, |v| v.objective.abs()) * scale;
     ParetoPoint {
         limit: tidy(wanted.base.quantity.shown(limit)),
         status: end.outcome,
         // A design that breaks its limits is no point of the front.
         loss_w: end.values.as_ref().filter(|v| v.violation() <= FEASIBLE).map(|v| v.objective),
         violation: end.values.as_ref().map(|v| v.violation()),
-        price_w_per_unit: optimal.then_some(price),
+        price_w_per_unit: optimal.then_some(if price * limit > PRICELESS * loss { price } else { 0.0 }),
         simulations: end.evaluations,
         design: end.x.iter().zip(&study.parameters).map(shown).collect(),
     }

@@ -18,6 +18,9 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use std::sync::Arc;
 
 const PATH: &str = "robust";
+/// Relative difference between drawn and first-order deviations up to which first order holds; what a few dozen draws leave open is
+/// about half of it.
+const REFUTED: f64 = 0.3;
 
 /// A checked robust design.
 #[derive(Debug, Clone, PartialEq)]
@@ -175,24 +178,26 @@ pub(super) fn report(
         })
         .collect();
     let good: Vec<_> = drawn.iter().filter_map(|d| d.as_ref().ok()).collect();
+    let failed = drawn.len() - good.len();
     let losses: Vec<f64> = good.iter().map(|v| v.objective).collect();
     let (mean, deviation) = moments(&losses);
     let covered = nominal.objective + margins.objective;
     let limits = plan.limits.iter().enumerate().map(|(k, label)| {
         let (c, case) = (&study.constraints[label.constraint], plan.cases[label.case]);
-        let (unit, _) = c.quantity.unit();
+        let (unit, scale) = c.quantity.unit();
         let rows: Vec<f64> = good.iter().map(|v| v.inequalities[k]).collect();
-        let size = c.quantity.shown(c.limit).abs();
+        let size = c.limit / scale;
         SampledLimit {
             quantity: c.quantity.key().to_owned(),
             bearing: study.bearings[case.bearing].name.clone(),
             operating_point: study.points[case.point].name.clone(),
-            unit: unit.to_owned(),
+            unit: unit.replace("degC", "K"),
             deviation: margins.inequalities[k] / wanted.sigmas * size,
             sampled_deviation: (!rows.is_empty()).then(|| moments(&rows).1 * size),
-            broken_percent: percent(&rows, 1e-6),
+            broken_percent: percent(&rows, 1e-6, failed),
         }
     });
+    let limits: Vec<SampledLimit> = limits.collect();
     let all = || study.variables();
     Some(RobustReport {
         sigmas: wanted.sigmas,
@@ -206,6 +211,7 @@ pub(super) fn report(
                     nominal: p.variable.shown(whole[j]),
                     deviation: s / p.variable.scale.0,
                     unit: p.variable.unit.to_owned(),
+                    deviation_unit: p.variable.unit.replace("degC", "K"),
                 })
             })
             .collect(),
@@ -213,11 +219,12 @@ pub(super) fn report(
         deviation_w: margins.objective / wanted.sigmas,
         robust_w: covered,
         samples: wanted.samples,
-        failed: (drawn.len() - good.len()) as u64,
+        failed: failed as u64,
+        verdict: verdict(&limits, margins.objective / wanted.sigmas, deviation, good.len()),
         sampled_mean_w: (!losses.is_empty()).then_some(mean),
         sampled_deviation_w: (!losses.is_empty()).then_some(deviation),
-        above_percent: percent(&losses.iter().map(|l| l / covered - 1.0).collect::<Vec<_>>(), 0.0),
-        limits: limits.collect(),
+        above_percent: percent(&losses.iter().map(|l| l / covered - 1.0).collect::<Vec<_>>(), 0.0, failed),
+        limits,
     })
 }
 
@@ -229,8 +236,28 @@ fn moments(values: &[f64]) -> (f64, f64) {
     (mean, (square / (n - 1.0).max(1.0)).sqrt())
 }
 
-/// Share of values above a bound, per cent.
-fn percent(values: &[f64], bound: f64) -> Option<f64> {
-    let above = values.iter().filter(|v| **v > bound).count();
-    (!values.is_empty()).then(|| 100.0 * above as f64 / values.len() as f64)
+/// Share of values above a bound, per cent; those that failed are above it too.
+fn percent(values: &[f64], bound: f64, failed: usize) -> Option<f64> {
+    let above = values.iter().filter(|v| **v > bound).count() + failed;
+    let all = values.len() + failed;
+    (all > 0).then(|| 100.0 * above as f64 / all as f64)
+}
+
+/// Whether the drawn deviations are those of first order.
+fn verdict(limits: &[SampledLimit], first_order: f64, drawn: f64, count: usize) -> Option<String> {
+    if count < 2 {
+        return None;
+    }
+    let of_limits = limits.iter().filter_map(|l| Some((l.deviation, l.sampled_deviation?)));
+    let pairs = std::iter::once((first_order, drawn)).chain(of_limits);
+    let apart = |(first, drawn): (f64, f64)| if first > 0.0 { (drawn / first - 1.0).abs() } else { 0.0 };
+    let worst = pairs.map(apart).fold(0.0, f64::max);
+    let percent = crate::report::short((1e3 * worst).round() / 10.0);
+    Some(match worst < REFUTED {
+        true => format!("the first order holds, drawn deviations are within {percent} % of it"),
+        false => format!(
+            "the first order does not hold here, a drawn deviation differs by {percent} % from it: trust the drawn values, narrow the \
+             tolerances or ask for more standard deviations"
+        ),
+    })
 }

@@ -16,7 +16,7 @@ use crate::report::{
     Assumption, CostReport, Curves, Findings, KktReport, ObjectiveReport, OutcomeReport, Provenance,
     REPORT_FORMAT, Report,
 };
-use crate::run::{Cancel, Event, NoStore, RunContext, Store};
+use crate::run::{Cancel, Cost, Event, NoStore, RunContext, Store};
 use std::time::Instant;
 
 /// Runs a study to its end, whatever that is: failures to converge are outcomes in the report.
@@ -47,13 +47,20 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
     }
     findings.report.choices = choices;
     findings.report.study_hash = given.hash.clone();
-    findings.report.rivals = rivals(study, context, store);
-    findings.report.pareto = front(study, &searched, context, store);
+    let (rivals, of_rivals) = rivals(study, context, store);
+    findings.report.rivals = rivals;
+    let front = front(study, &searched, context, store);
     findings.report.starts = searched.starts;
+    // Everything that was simulated for this report, whichever search asked for it.
+    let all = [plan.problem.costs(), searched.others, of_rivals];
+    let mut sum = all.into_iter().fold((Cost::default(), Cost::default()), |a, c| (a.0 + c.0, a.1 + c.1));
+    if let Some((front, cost)) = front {
+        findings.report.pareto = Some(front);
+        sum = (sum.0 + cost.0, sum.1 + cost.1);
+    }
     let cost = &mut findings.report.cost;
-    let (simulations, gradients) = searched.others;
-    cost.total += simulations + gradients;
-    cost.gradients += gradients;
+    cost.total = sum.0 + sum.1;
+    cost.gradients = sum.1;
     cost.seconds = began.elapsed().as_secs_f64();
     findings
 }
@@ -90,7 +97,7 @@ fn report(study: &Study, found: &Searched, known: Option<Known>, context: RunCon
             }
         }
         report.constraints = constraints(study, plan, minimum, &known.optimum, &all);
-        if report.constraints.iter().any(|c| !c.met) {
+        if report.constraints.iter().any(|c| !c.met) || report.linear_constraints.iter().any(|l| !l.met) {
             // A design that breaks its limits saves nothing.
             report.objective.saving_percent = None;
         }
@@ -101,7 +108,7 @@ fn report(study: &Study, found: &Searched, known: Option<Known>, context: RunCon
                 report.kkt.verdict = report.kkt.curvature.as_ref().map(|c| c.verdict().to_owned());
             }
             report.gradient = gradient(study, plan, &minimum.x, &known.optimum, &mut all, context).ok();
-            price_parameters(study, plan, minimum, &mut report.design);
+            price_parameters(study, found, &mut report.design);
         }
         findings.curves = all;
     }
@@ -134,6 +141,7 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
             quantity: objective_words(study),
             start: None,
             optimum: None,
+            start_violation: None,
             saving_percent: None,
             operating_points: Vec::new(),
             worst_case: Vec::new(),
@@ -175,6 +183,7 @@ pub(super) fn provenance(study: &Study) -> Provenance {
         program: env!("CARGO_PKG_NAME").to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         methods: methods(study),
+        started_from: study.started_from.clone(),
         study: study.to_json(),
     }
 }

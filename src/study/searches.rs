@@ -199,13 +199,22 @@ fn report(study: &Study, starts: &[Vec<f64>], ends: &[(Plan, End)]) -> StartsRep
 }
 
 /// Rivals of the study's own search, from the same start, one after the other.
-pub(super) fn rivals<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Store) -> Vec<RivalRun> {
+pub(super) fn rivals<'r>(
+    study: &Study,
+    context: RunContext<'r>,
+    store: &'r dyn Store,
+) -> (Vec<RivalRun>, (Cost, Cost)) {
     let own = (study.optimiser.options.method, study.engine);
     if study.optimiser.rivals.is_empty() {
-        return Vec::new();
+        return Default::default();
     }
     let all = std::iter::once(own).chain(study.optimiser.rivals.iter().copied());
-    all.enumerate().filter_map(|(k, rival)| rival_run(study, k, rival, context, store)).collect()
+    let (mut runs, mut cost) = (Vec::new(), (Cost::default(), Cost::default()));
+    for (run, spent) in all.enumerate().filter_map(|(k, rival)| rival_run(study, k, rival, context, store)) {
+        runs.push(run);
+        cost = (cost.0 + spent.0, cost.1 + spent.1);
+    }
+    (runs, cost)
 }
 
 fn rival_run<'r>(
@@ -214,7 +223,7 @@ fn rival_run<'r>(
     (method, engine): (Method, EngineName),
     context: RunContext<'r>,
     store: &'r dyn Store,
-) -> Option<RivalRun> {
+) -> Option<(RivalRun, (Cost, Cost))> {
     let name = format!("rival {}: {} with {}", k + 1, method.words(), engine.as_str());
     context.progress.tell(&Event::Stage { name });
     if context.cancel.is_cancelled() {
@@ -228,7 +237,7 @@ fn rival_run<'r>(
     let (simulations, gradients) = plan.problem.costs();
     let per_cycle = simulations.factorisations as f64 / simulations.simulations.max(1) as f64;
     let cases = plan.cases.len() as f64;
-    Some(RivalRun {
+    let run = RivalRun {
         method,
         engine,
         status: end.outcome,
@@ -239,5 +248,6 @@ fn rival_run<'r>(
         gradient_calls: end.gradients,
         gradient_simulations: gradients.factorisations as f64 / per_cycle / cases,
         seconds: began.elapsed().as_secs_f64(),
-    })
+    };
+    Some((run, (simulations, gradients)))
 }

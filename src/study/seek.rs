@@ -6,6 +6,9 @@ use crate::optimise::{
     EvaluationError, Minimum, Outcome, Polished, SearchOptions, polish, search, search_worst,
 };
 
+/// A polish goes on to this share of the tolerance of the search.
+const POLISHED: f64 = 1e-4;
+
 /// What a search ended with.
 pub(super) struct End {
     pub minimum: Minimum,
@@ -35,7 +38,7 @@ pub(super) fn seek(
     let mut polished = None;
     if study.optimiser.polish && usable {
         let tolerance = options.settings.tolerance;
-        match polish(&plan.problem, &mut minimum, tolerance) {
+        match polish(&plan.problem, &mut minimum, POLISHED * tolerance) {
             Ok(done) => polished = Some(done),
             Err(EvaluationError::Cancelled) => minimum.outcome = Outcome::Cancelled,
             Err(EvaluationError::Failed(reason)) => minimum.failures.push(reason),

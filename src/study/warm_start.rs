@@ -1,7 +1,7 @@
 //! A study that starts from the design of an earlier report.
 
 use super::check::Study;
-use crate::report::{DesignValue, Report};
+use crate::report::Report;
 use sha2::{Digest, Sha256};
 
 impl Study {
@@ -11,17 +11,19 @@ impl Study {
     /// # Errors
     /// If the report has no parameter of this study, or one in another unit.
     pub fn started_from(mut self, report: &Report) -> Result<(Self, usize), String> {
-        let found = self.start_at(&report.design)?;
+        let found = self.start_at(report)?;
         if let Some(choices) = &mut self.choices {
             for (_, variant) in &mut choices.variants {
-                variant.start_at(&report.design)?;
+                variant.start_at(report)?;
             }
         }
         Ok((self, found))
     }
 
-    fn start_at(&mut self, design: &[DesignValue]) -> Result<usize, String> {
+    fn start_at(&mut self, report: &Report) -> Result<usize, String> {
         let mut found = 0;
+        let design = &report.design;
+        self.started_from = Some(report.study_hash.clone());
         for p in &mut self.parameters {
             let Some(value) = design.iter().find(|d| d.name == p.name) else { continue };
             if value.unit != p.variable.unit {

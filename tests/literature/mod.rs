@@ -90,7 +90,7 @@ impl Slider {
     }
 
     fn site(&self) -> FilmSite<'_> {
-        FilmSite { input: self.input, shape_m: &self.shape_m, journal_angle_rad: 0.0 }
+        FilmSite { input: self.input, shape_m: &self.shape_m, journal_angle_rad: 0.0, marks: &[] }
     }
 
     /// Gap of a column.

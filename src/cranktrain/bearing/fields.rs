@@ -12,7 +12,7 @@
 //! `(1 - f) J_k + f J_{k+1}` on the column of the shell at `phi`, with `k + f = (phi - a) / dphi`.
 
 use super::shapes::Shapes;
-use super::{BearingParameter, JournalBearing, Tilt};
+use super::{BearingParameter, JournalBearing, SurfaceField, Tilt};
 use crate::film::{FilmCotangent, FilmInput, INPUTS, Mesh};
 
 /// Derivative of a quantity by the local gap, per area: rows around (first index), columns across the width.
@@ -120,7 +120,7 @@ impl JournalBearing {
         }
         let mut shape = du[parts.shell()].to_vec();
         if moved(&du[parts.journal()]) {
-            self.turn(angle_rad, |shell, journal, share| {
+            self.shapes.grid.turn(angle_rad, |shell, journal, share| {
                 shape[shell] += share * du[SCALARS + parts.cells + journal]
             });
         }
@@ -137,24 +137,16 @@ impl JournalBearing {
         }
         u[parts.shell()].iter_mut().zip(&bar.gap_m).for_each(|(u, b)| *u += b);
         let journal = &mut u[parts.journal()];
-        self.turn(angle_rad, |shell, at, share| journal[at] += share * bar.gap_m[shell]);
+        self.shapes.grid.turn(angle_rad, |shell, at, share| journal[at] += share * bar.gap_m[shell]);
         self.shapes.turned_back(angle_rad, &bar.gap_m, &mut u[parts.turning()]);
     }
 
-    /// Calls `visit` with every cell, a cell of the journal's grid that it sees, and the share it sees of it.
-    fn turn(&self, angle_rad: f64, mut visit: impl FnMut(usize, usize, f64)) {
-        let Some(mesh) = self.setup.film.mesh() else { return };
-        let (n, b) = (mesh.n_phi, mesh.n_z);
-        let columns = -angle_rad / std::f64::consts::TAU * n as f64;
-        let (whole, share) = (columns.floor(), columns - columns.floor());
-        let first = (whole as i64).rem_euclid(n as i64) as usize;
-        for i in 0..n {
-            let (k, next) = ((first + i) % n, (first + i + 1) % n);
-            for j in 0..b {
-                visit(i * b + j, k * b + j, 1.0 - share);
-                visit(i * b + j, next * b + j, share);
-            }
-        }
+    /// Derivatives by the gap of every cell of shell and journal, in derivatives by the fields: those by [`BearingSetup::worn_m`].
+    ///
+    /// [`BearingSetup::worn_m`]: super::BearingSetup::worn_m
+    pub fn by_gap(&self, fields: &[f64]) -> SurfaceField {
+        let parts = self.parts();
+        SurfaceField { shell: fields[parts.shell()].to_vec(), journal: fields[parts.journal()].to_vec() }
     }
 
     /// The sensitivity map in derivatives by the fields; none for a film without cells.

@@ -21,12 +21,13 @@ mod rescue;
 mod sensitive;
 mod setup;
 mod shapes;
+mod wear;
 
 pub use fields::GapSensitivity;
 pub use heat::HeatBalance;
 pub use model::{BearingFactors, BearingRoom};
 pub use sensitive::BearingPoint;
-pub use setup::{BearingOutput, BearingParameter, BearingSetup, BearingShape, Tilt};
+pub use setup::{BearingOutput, BearingParameter, BearingSetup, BearingShape, SurfaceField, Tilt};
 
 use super::Drive;
 use crate::dae::{At, InvalidParameters};
@@ -152,12 +153,13 @@ impl JournalBearing {
         let mut z = vec![0.0; self.layout.n + self.layout.border()];
         z[self.layout.n..self.layout.n + 2].copy_from_slice(&eccentricity_m);
         let input = FilmInput { speed_rad_s, ..self.input(0.0, &z, [0.0; 2]) };
-        (input, self.shapes.at(0.0, &mut Vec::new()).to_vec())
+        (input, self.shapes.at(0.0, &mut Vec::new()).0.to_vec())
     }
 
     fn site<'a>(&'a self, t_s: f64, input: FilmInput, shape: &'a mut Vec<f64>) -> FilmSite<'a> {
         let journal_angle_rad = self.drive(t_s).journal_angle_rad;
-        FilmSite { input, shape_m: self.shapes.at(journal_angle_rad, shape), journal_angle_rad }
+        let (shape_m, marks) = self.shapes.at(journal_angle_rad, shape);
+        FilmSite { input, shape_m, journal_angle_rad, marks }
     }
 
     fn input(&self, t_s: f64, z: &[f64], velocity_m_s: [f64; 2]) -> FilmInput {

@@ -82,6 +82,7 @@ impl JournalBearing {
             film.loss_w,
             self.setup.film_temperature_k(),
             self.setup.wear_m3_per_j * film.contact_loss_w,
+            film.rubbing_w_m2,
         ]);
     }
 }

@@ -15,13 +15,15 @@ use crate::math::Singular;
 pub struct BearingPoint {
     input: FilmInput,
     shape_m: Vec<f64>,
+    marks: Vec<f64>,
     journal_angle_rad: f64,
     film: FilmPoint,
 }
 
 impl BearingPoint {
     fn site(&self) -> FilmSite<'_> {
-        FilmSite { input: self.input, shape_m: &self.shape_m, journal_angle_rad: self.journal_angle_rad }
+        let Self { input, shape_m, marks, journal_angle_rad, .. } = self;
+        FilmSite { input: *input, shape_m, marks, journal_angle_rad: *journal_angle_rad }
     }
 }
 
@@ -60,6 +62,8 @@ impl JournalBearing {
         into.journal_angle_rad = site.journal_angle_rad;
         into.shape_m.clear();
         into.shape_m.extend_from_slice(site.shape_m);
+        into.marks.clear();
+        into.marks.extend_from_slice(site.marks);
         self.setup.film.fix(&site, self.film_unknowns(at.z), outputs, &mut into.film);
     }
 
@@ -77,6 +81,7 @@ impl JournalBearing {
             pressure_peak_pa: at(BearingOutput::PressurePeak),
             contact_peak_pa: at(BearingOutput::ContactPeak),
             side_flow_m3_s: at(BearingOutput::SideFlow),
+            rubbing_w_m2: at(BearingOutput::Rubbing),
             ..FilmOutput::default()
         }
     }

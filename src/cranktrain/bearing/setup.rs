@@ -57,11 +57,13 @@ pub enum BearingOutput {
     FilmTemperature,
     /// Volume worn off per time, m3/s (Archard).
     WearRate,
+    /// Contact pressure times sliding speed, W/m2, summed over the cells with [`BearingSetup::marks`] as weights.
+    Rubbing,
 }
 
 impl BearingOutput {
     /// All outputs in their order.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Loss,
         Self::ContactLoss,
         Self::Dissipation,
@@ -73,6 +75,7 @@ impl BearingOutput {
         Self::HydrodynamicLoss,
         Self::FilmTemperature,
         Self::WearRate,
+        Self::Rubbing,
     ];
 
     /// Position in the output vector.
@@ -99,6 +102,15 @@ pub struct BearingShape {
     pub profile: Profile,
     /// Whether it belongs to the journal and turns with it.
     pub on_journal: bool,
+}
+
+/// A number for every cell of the film on both surfaces: rows around, columns across, like the film's own cells. Empty for zero.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SurfaceField {
+    /// Where the shell stands.
+    pub shell: Vec<f64>,
+    /// On a grid that turns with the journal and meets the shell's at angle zero; between its columns it is linear.
+    pub journal: Vec<f64>,
 }
 
 /// Everything that defines a bearing apart from what is varied.
@@ -138,6 +150,10 @@ pub struct BearingSetup {
     pub tilt: Tilt,
     /// Shapes of journal and shell.
     pub shapes: Vec<BearingShape>,
+    /// Material worn off, m: what wear adds to the gap.
+    pub worn_m: Arc<SurfaceField>,
+    /// Weights in [`BearingOutput::Rubbing`].
+    pub marks: Arc<SurfaceField>,
     /// Which of the above are the parameters `p`, in order.
     pub parameters: Vec<BearingParameter>,
 }
@@ -163,6 +179,8 @@ impl BearingSetup {
             supply_pressure_pa: 0.0,
             tilt: Tilt::Given([0.0; 2]),
             shapes: Vec::new(),
+            worn_m: Arc::default(),
+            marks: Arc::default(),
             parameters: Vec::new(),
         }
     }
@@ -248,6 +266,15 @@ impl BearingSetup {
             || self.parameters.iter().any(|p| matches!(p, BearingParameter::Tilt(_)));
         if half && tilted {
             return Err(InvalidParameters("a tilting journal needs a film over the whole width".to_owned()));
+        }
+        let cells = self.film.mesh().map_or(0, crate::film::Mesh::cells);
+        for field in [&self.worn_m.shell, &self.worn_m.journal, &self.marks.shell, &self.marks.journal] {
+            if !field.is_empty() && field.len() != cells {
+                let found = field.len();
+                return Err(InvalidParameters(format!(
+                    "a surface field has {found} values for {cells} cells"
+                )));
+            }
         }
         let rough = [("journal", self.journal_roughness_m), ("shell", self.shell_roughness_m)];
         for (name, value) in rough {

@@ -4,7 +4,7 @@ use super::QuantityText;
 use crate::gradient::EngineName;
 use crate::optimise::Method;
 use crate::study::{Given, QuantityName};
-use crate::units::{Rotation, Time};
+use crate::units::{Duration, Rotation};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -186,8 +186,8 @@ section! {
         seed: u64,
         /// Designs one search may simulate. No limit by default.
         max_simulations: u64,
-        /// Wall time one search may take, like "600 s"; a search that ends by it gives other numbers on a rerun. No limit by default.
-        max_time: Time,
+        /// Wall time one search may take, like "10 min"; a search that ends by it gives other numbers on a rerun. No limit by default.
+        max_time: Duration,
         /// Methods and gradient engines that search from the same start too, for comparison in the report. None by default.
         rivals: Vec<RivalFile>,
         /// Scaled KKT residual at which a design counts as optimal. Default 1e-6.

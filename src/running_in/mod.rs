@@ -1,0 +1,24 @@
+//! Running-in: bearings that touch wear, and wear until they touch less.
+//!
+//! ```text
+//! dw/dt = K/H share r(w),    r = 1/T Int_WC p_contact |U| dt    of every cell, shell and journal           Archard (1953)
+//! E = Int P(w) dt            the energy lost,   P the mean friction loss of the settled cycle with the worn surfaces
+//! ```
+//!
+//! Wear is slow: over one working cycle the surfaces stand still, and the settled cycle with the surfaces of the moment says how
+//! fast they wear (cycle jump). [`march`] integrates over a programme of [`Stage`]s in blocks of many cycles, by the method of
+//! Heun with that of Euler inside: their difference is the error of a block, and decides its length. [`march_adjoint`] carries
+//! derivatives back through the blocks: at each of them one adjoint of a cycle, whose weights on the rubbing of every cell are
+//! what the depth there is worth later on. Block lengths are frozen in a derivative, like the steps of a cycle.
+//!
+//! Deliberately not here: study files, words, optimisation; roughness that changes with wear.
+
+mod adjoint;
+mod march;
+mod quantity;
+mod rate;
+
+pub use adjoint::{RunningInGradient, march_adjoint};
+pub use march::{Block, March, MarchError, MarchOptions, Stage, march, replay};
+pub use quantity::{RunningInQuantity, Worth};
+pub use rate::Rate;
