@@ -99,6 +99,8 @@ fn each_kind_of_mistake_has_its_words() {
 
 /// Mistakes in what is asked of a search; each stands before `[oil]`.
 const ASKED: &[&str] = &[
+    "[running_in]\nstages = []",
+    "[running_in]\nwear_depth_tolerance = \"0 um\"\njournal_share = 2\nmax_blocks = 0\n[[running_in.stages]]\nname = \"a\"\nduration = \"2 days\"\nspeed = \"0 rpm\"\nload = 2",
     "[objective]\naggregate = \"worst\"",
     "[objective]\naggregate = \"worst-case\"\n[robust]\ntolerances = []",
     "[robust]\nsigmas = -1\nsamples = 3\n[[robust.tolerances]]\nparameter = \"big_end.clearance\"\nstandard_deviation = \"3 um\"",

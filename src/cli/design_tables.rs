@@ -1,12 +1,13 @@
 //! Short tables of what a search was asked beside its limits: sums, worst case, margins, choices.
 
 use super::tables::{maybe, table, word};
-use crate::report::{Report, short};
+use crate::report::{CycleState, Report, short};
 
 /// Everything of these that a report has.
 pub(super) fn design_tables(report: &Report) -> String {
     let mut text = String::new();
-    for rows in [sums(report), worst_case(report), margins(report), choices(report)].into_iter().flatten() {
+    let all = [sums(report), worst_case(report), margins(report), choices(report), running_in(report)];
+    for rows in all.into_iter().flatten() {
         text += &format!("{rows}\n\n");
     }
     text
@@ -91,4 +92,43 @@ fn choices(report: &Report) -> Option<String> {
     }
     let taken: Vec<String> = c.taken.iter().map(|t| format!("{}: {}", t.name, t.taken)).collect();
     Some(format!("{rows}\ntaken: {}", taken.join("; ")))
+}
+
+fn running_in(report: &Report) -> Option<String> {
+    let r = report.running_in.as_ref()?;
+    let mut rows = table(&[
+        "running-in",
+        "energy lost [kJ]",
+        "worn off [mm3]",
+        "deepest [um]",
+        "point",
+        "loss new, run in [W]",
+        "contact part [W]",
+        "film [um]",
+    ]);
+    let mut failures = String::new();
+    for b in &r.bearings {
+        if let Some(reason) = &b.failure {
+            failures += &format!("\n{} could not be run in: {reason}", b.bearing);
+        }
+        let mut own = [b.energy_lost_kj, b.wear_volume_mm3, b.max_wear_depth_um].map(short);
+        let mut name = b.bearing.clone();
+        for p in &b.operating_points {
+            let pair = |of: fn(&CycleState) -> f64| {
+                format!("{}, {}", short(of(&p.new)), maybe(p.run_in.as_ref().map(of)))
+            };
+            let [energy, volume, depth] = std::mem::take(&mut own);
+            rows.add_row([
+                std::mem::take(&mut name),
+                energy,
+                volume,
+                depth,
+                p.operating_point.clone(),
+                pair(|s| s.loss_w),
+                pair(|s| s.contact_loss_w),
+                pair(|s| s.min_film_thickness_um),
+            ]);
+        }
+    }
+    Some(format!("{rows}{failures}"))
 }

@@ -1,7 +1,8 @@
 //! Content of `report.json`. Every number that has a unit names it in its key or stands beside it.
 
 use super::{
-    ChoicesReport, LinearReport, ParetoReport, RivalRun, RobustReport, StartsReport, WorstCaseReport,
+    ChoicesReport, LinearReport, ParetoReport, RivalRun, RobustReport, RunningInReport, StartsReport,
+    WorstCaseReport,
 };
 use crate::gradient::{EngineName, TaylorRow};
 use crate::optimise::{Curvature, Outcome};
@@ -52,6 +53,8 @@ pub struct Report {
     pub pareto: Option<ParetoReport>,
     /// Margins for what scatters, if the study asks for them.
     pub robust: Option<RobustReport>,
+    /// Running-in of the design, if the study asks for it.
+    pub running_in: Option<RunningInReport>,
     /// What was chosen from lists, if the study has any.
     pub choices: Option<ChoicesReport>,
     /// Work done.

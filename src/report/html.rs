@@ -1,7 +1,7 @@
 //! `report.html`: one self-contained page, the answer first, then the evidence.
 
 use super::data::TOUCH_MPA;
-use super::{Findings, figures, maps};
+use super::{BearingRunningIn, Findings, figures, maps};
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 use serde::Serialize;
@@ -24,6 +24,29 @@ struct CycleFigures {
     pressure_map: String,
     fill_map: Option<String>,
     sensitivity_maps: Option<[String; 2]>,
+}
+
+/// Figures of one running-in; none where it failed.
+#[derive(Serialize, Default)]
+struct RunningInFigures {
+    loss: Option<String>,
+    share: Option<String>,
+    depth: Option<String>,
+    map: Option<String>,
+}
+
+impl RunningInFigures {
+    fn of((k, b): (usize, &BearingRunningIn)) -> Self {
+        if b.blocks.is_empty() {
+            return Self::default();
+        }
+        Self {
+            loss: Some(figures::running_in_loss(b, &format!("running-in-loss-{k}"))),
+            share: Some(figures::running_in_share(b, &format!("running-in-share-{k}"))),
+            depth: Some(figures::running_in_depth(b, &format!("running-in-depth-{k}"))),
+            map: maps::wear_map(b, &format!("wear-{k}")),
+        }
+    }
 }
 
 /// The page as text.
@@ -54,6 +77,8 @@ pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
         .collect();
     let convergence = (!report.history.is_empty()).then(|| figures::convergence(report, "convergence"));
     let front = report.pareto.as_ref().map(|p| figures::front(p, "front"));
+    let running_in: Vec<RunningInFigures> =
+        report.running_in.iter().flat_map(|r| &r.bearings).enumerate().map(RunningInFigures::of).collect();
     let cylinder = (!findings.cylinder.is_empty()).then(|| figures::cylinder(&findings.cylinder, "cylinder"));
     let study = toml::to_string(&report.provenance.study).unwrap_or_default();
     let mut environment = environment();
@@ -64,6 +89,7 @@ pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
         convergence,
         front,
         cylinder,
+        running_in => Value::from(Serde(running_in)),
         touch_mpa => TOUCH_MPA,
         style => STYLE,
         study,

@@ -1,7 +1,7 @@
 //! Fields over the unwrapped bearing, as pictures.
 
-use super::Curves;
 use super::svg::{half, render, styled};
+use super::{BearingRunningIn, Curves};
 use kuva::prelude::*;
 use std::sync::Arc;
 
@@ -94,10 +94,32 @@ pub fn sensitivity_maps(c: &Curves, name: &str) -> Option<[String; 2]> {
 
 /// A field over the unwrapped bearing, rows around and columns across.
 fn map(c: &Curves, field: &[Vec<f64>], scale: Scale, frame: Frame, label: &str, name: &str) -> String {
+    let cut = if frame == Frame::Shell { cut(&c.pressure_map_mpa) } else { (0, 0.0) };
+    unwrapped(c.width_mm, cut, field, scale, frame, (label, name))
+}
+
+/// Depth worn off a shell, cut where it does not wear.
+pub fn wear_map(b: &BearingRunningIn, name: &str) -> Option<String> {
+    let top = b.wear_depth_um.iter().flatten().copied().fold(0.0f64, f64::max);
+    let words = ("wear depth [µm]", name);
+    (top > 0.0).then(|| {
+        let (field, scale) = (&b.wear_depth_um, Scale::upwards(top));
+        unwrapped(b.width_mm, cut(field), field, scale, Frame::Shell, words)
+    })
+}
+
+/// A field of the unwrapped bearing, cut at a row that stands at an angle.
+fn unwrapped(
+    width_mm: f64,
+    (first, first_deg): (usize, f64),
+    field: &[Vec<f64>],
+    scale: Scale,
+    frame: Frame,
+    (label, name): (&str, &str),
+) -> String {
     let around = field.len();
     let every = around.div_ceil(MAP_COLUMNS).max(1);
     let across = field.first().map_or(0, Vec::len);
-    let (first, first_deg) = if frame == Frame::Shell { cut(&c.pressure_map_mpa) } else { (0, 0.0) };
     // kuva draws rows upwards: one row per axial cell, one column per angle.
     let column = |i: usize| &field[(first + i) % around];
     let grid: Vec<Vec<f64>> =
@@ -114,7 +136,7 @@ fn map(c: &Curves, field: &[Vec<f64>], scale: Scale, frame: Frame, label: &str, 
             .with_data(grid)
             .with_color_map(colours)
             .with_x_range(first_deg - half_cell, first_deg + 360.0 - half_cell)
-            .with_y_range(-c.width_mm / 2.0, c.width_mm / 2.0)
+            .with_y_range(-width_mm / 2.0, width_mm / 2.0)
             .with_cell_size(1.0)
             .into(),
     ];
@@ -126,8 +148,8 @@ fn map(c: &Curves, field: &[Vec<f64>], scale: Scale, frame: Frame, label: &str, 
         .with_y_label("axial position [mm]")
         .with_x_axis_min(first_deg - half_cell)
         .with_x_axis_max(first_deg + 360.0 - half_cell)
-        .with_y_axis_min(-c.width_mm / 2.0)
-        .with_y_axis_max(c.width_mm / 2.0)
+        .with_y_axis_min(-width_mm / 2.0)
+        .with_y_axis_max(width_mm / 2.0)
         .with_x_tick_step(90.0)
         .with_show_grid(false);
     render(plots, layout, name)

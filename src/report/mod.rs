@@ -10,6 +10,7 @@ mod data;
 mod figures;
 mod html;
 mod maps;
+mod running_in;
 mod searches;
 mod svg;
 mod vtk;
@@ -26,6 +27,10 @@ pub use comparison::{
 pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
 pub use html::html;
+pub use running_in::{
+    BearingRunningIn, BeforeAfter, CycleState, RunningInBlock, RunningInReport, StageReport, running_in_csv,
+    wear_csv,
+};
 pub use searches::{
     ChoiceReport, ChoiceRun, ChoicesReport, LinearReport, LocalOptimum, ParetoPoint, ParetoReport, RivalRun,
     RobustReport, SampledLimit, StartRun, StartsReport, ToleranceReport, WorstCaseReport, pareto_csv,
@@ -52,6 +57,11 @@ pub fn write_folder(findings: &Findings, folder: &Path) -> std::io::Result<()> {
     }
     if let Some(front) = &findings.report.pareto {
         std::fs::write(folder.join("pareto.csv"), pareto_csv(front).map_err(std::io::Error::other)?)?;
+    }
+    if let Some(r) = &findings.report.running_in {
+        let csv = |text: Result<String, csv::Error>| text.map_err(std::io::Error::other);
+        std::fs::write(folder.join("running-in.csv"), csv(running_in_csv(r))?)?;
+        std::fs::write(folder.join("wear.csv"), csv(wear_csv(r))?)?;
     }
     for (k, c) in findings.curves.iter().enumerate() {
         for (surface, text) in film_vtk(c) {

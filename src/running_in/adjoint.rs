@@ -51,7 +51,9 @@ pub fn march_adjoint(
         cancel,
         gradient: RunningInGradient {
             by_stage: stages.iter().map(|s| vec![0.0; varied(s)]).collect(),
-            by_duration: vec![worth.duration; stages.len()],
+            by_duration: (0..stages.len())
+                .map(|s| worth.duration + if s + 1 == stages.len() { worth.last_duration } else { 0.0 })
+                .collect(),
             cost: Cost::default(),
         },
     };
@@ -63,11 +65,13 @@ pub fn march_adjoint(
         later = moved(&later, 1.0, &by);
     }
     for (k, block) in march.blocks.iter().enumerate().rev() {
-        let (h, e) = (block.length_s, worth.energy);
+        let in_last = block.stage + 1 == stages.len();
+        let (h, e) = (block.length_s, worth.energy + if in_last { worth.last_energy } else { 0.0 });
         let [k1, k2] = [0, 1].map(|r| options.depths(&block.rates[r]));
         let half = moved(&zeros(&later), 0.5 * h, &later);
         let second = back.cycle((block.stage, &block.reached_m), &block.rates[1], 0.5 * e * h, &half)?;
-        let first_loss = if k == 0 { worth.first_loss } else { 0.0 };
+        let begins = in_last && (k == 0 || march.blocks[k - 1].stage != block.stage);
+        let first_loss = if begins { worth.first_loss } else { 0.0 };
         let on_first = moved(&half, h, &second);
         let at = (block.stage, &block.worn_m);
         let first = back.cycle(at, &block.rates[0], 0.5 * e * h + first_loss, &on_first)?;

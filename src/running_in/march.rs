@@ -4,7 +4,7 @@
 //! k1 = f(w),  k2 = f(w + h k1),   w+ = w + h (k1 + k2) / 2,   E+ = E + h (P1 + P2) / 2,   error = h/2 max |k2 - k1|
 //! ```
 
-use super::rate::{Rate, rate};
+use super::rate::{Rate, settled_with_wear};
 use crate::cranktrain::{JournalBearing, SurfaceField};
 use crate::orbit::{OrbitError, OrbitOptions};
 use crate::run::{Cancel, Cost};
@@ -112,6 +112,8 @@ pub struct March {
     pub worn_m: SurfaceField,
     /// The cycle of the last stage with them.
     pub last: Rate,
+    /// The end of each stage: when, the surfaces, the cycle.
+    pub ends: Vec<(f64, SurfaceField, Rate)>,
     /// Energy lost to friction, J.
     pub energy_j: f64,
     /// Length of the programme, s.
@@ -172,8 +174,9 @@ pub fn march(
             gone_s += h;
             first = walk.accept(block, tell)?;
         }
+        walk.ends.push((walk.from_s, walk.worn_m.clone(), first));
     }
-    walk.finish(stages.len() - 1)
+    walk.finish()
 }
 
 /// Goes through a programme in given blocks: shares of the duration of each stage. What a frozen derivative is the derivative of.
@@ -191,8 +194,9 @@ pub fn replay(
             let block = walk.attempt(stage, share * at.duration_s, &first)?;
             first = walk.accept(block, &mut |_| {})?;
         }
+        walk.ends.push((walk.from_s, walk.worn_m.clone(), first));
     }
-    walk.finish(stages.len() - 1)
+    walk.finish()
 }
 
 impl March {
@@ -215,6 +219,7 @@ struct Walk<'a> {
     from_s: f64,
     energy_j: f64,
     blocks: Vec<Block>,
+    ends: Vec<(f64, SurfaceField, Rate)>,
     /// The cycle settled last: where the next one starts.
     near: Option<Rate>,
     refused: usize,
@@ -233,7 +238,7 @@ impl<'a> Walk<'a> {
         if options.journal_share == 0.0 {
             worn_m.journal.clear();
         }
-        let (blocks, cost) = (Vec::new(), Cost::default());
+        let (blocks, ends, cost) = (Vec::new(), Vec::new(), Cost::default());
         Ok(Self {
             stages,
             options,
@@ -242,6 +247,7 @@ impl<'a> Walk<'a> {
             from_s: 0.0,
             energy_j: 0.0,
             blocks,
+            ends,
             near,
             refused: 0,
             cost,
@@ -253,7 +259,7 @@ impl<'a> Walk<'a> {
         self.cancel.check().map_err(|_| MarchError::Cancelled)?;
         let (model, worn_m) = (&self.stages[stage].model, worn_m.unwrap_or(&self.worn_m));
         let near = self.near.as_ref().map(|r| &r.orbit);
-        let found = rate(model, worn_m, &self.options.orbit, near, self.cancel)?;
+        let found = settled_with_wear(model, worn_m, &self.options.orbit, near, self.cancel)?;
         self.cost += found.orbit.cost;
         self.near = Some(found.clone());
         Ok(found)
@@ -284,9 +290,10 @@ impl<'a> Walk<'a> {
         self.rate(stage, None)
     }
 
-    fn finish(self, _last: usize) -> Result<March, MarchError> {
-        let last = self.near.ok_or_else(|| MarchError::Parameters("an empty programme".to_owned()))?;
-        let Self { blocks, worn_m, energy_j, from_s, refused, cost, .. } = self;
-        Ok(March { blocks, worn_m, last, energy_j, duration_s: from_s, refused, cost })
+    fn finish(self) -> Result<March, MarchError> {
+        let Self { blocks, ends, worn_m, energy_j, from_s, refused, cost, .. } = self;
+        let last =
+            ends.last().ok_or_else(|| MarchError::Parameters("an empty programme".to_owned()))?.2.clone();
+        Ok(March { blocks, worn_m, last, ends, energy_j, duration_s: from_s, refused, cost })
     }
 }

@@ -21,4 +21,4 @@ mod rate;
 pub use adjoint::{RunningInGradient, march_adjoint};
 pub use march::{Block, March, MarchError, MarchOptions, Stage, march, replay};
 pub use quantity::{RunningInQuantity, Worth};
-pub use rate::Rate;
+pub use rate::{Rate, settled_with_wear};

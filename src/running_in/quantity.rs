@@ -1,6 +1,6 @@
 //! Numbers from a running-in, with what each part of the march is worth to them.
 
-use super::March;
+use super::{Block, March};
 use crate::cranktrain::{JournalBearing, SurfaceField};
 use crate::film::Mesh;
 use crate::math::PowerMean;
@@ -19,7 +19,8 @@ pub enum RunningInQuantity {
     WearVolume,
     /// Smooth maximum (of the given sharpness) of the depth worn off the shell, m.
     MaxDepth(f64),
-    /// Time constant with which the loss falls from its first to its last value, `(E - P_N T) / (P_0 - P_N)`, s.
+    /// Time constant with which the loss falls in the last stage, from its value `P_0` at the beginning of it to `P_N` in the end:
+    /// `(E - P_N T) / (P_0 - P_N)` with the stage's own energy and length, s.
     TimeToRunIn,
 }
 
@@ -28,12 +29,16 @@ pub enum RunningInQuantity {
 pub struct Worth {
     /// By the energy lost.
     pub energy: f64,
-    /// By the first loss.
+    /// By the part of it that the last stage loses.
+    pub last_energy: f64,
+    /// By the loss at the beginning of the last stage.
     pub first_loss: f64,
     /// By the last loss.
     pub last_loss: f64,
     /// By the length of the programme.
     pub duration: f64,
+    /// By the length of the last stage.
+    pub last_duration: f64,
     /// By the surfaces in the end.
     pub worn: SurfaceField,
     /// By the area of a cell.
@@ -59,7 +64,10 @@ impl RunningInQuantity {
                 PowerMean::maximum(sharpness).of(march.worn_m.shell.iter().copied()).value()
             }
             Self::TimeToRunIn if first == last => 0.0,
-            Self::TimeToRunIn => (march.energy_j - last * march.duration_s) / (first - last),
+            Self::TimeToRunIn => {
+                let (energy_j, duration_s) = march.last_stage();
+                (energy_j - last * duration_s) / (first - last)
+            }
         }
     }
 
@@ -92,10 +100,11 @@ impl RunningInQuantity {
             Self::TimeToRunIn if first == last => {}
             Self::TimeToRunIn => {
                 let (fall, value) = (first - last, self.value(march, model));
-                worth.energy = 1.0 / fall;
-                worth.last_loss = (value - t) / fall;
+                let (_, duration_s) = march.last_stage();
+                worth.last_energy = 1.0 / fall;
+                worth.last_loss = (value - duration_s) / fall;
                 worth.first_loss = -value / fall;
-                worth.duration = -last / fall;
+                worth.last_duration = -last / fall;
             }
         }
         worth
@@ -103,10 +112,22 @@ impl RunningInQuantity {
 }
 
 impl March {
-    /// First and last mean friction loss, W.
+    /// Mean friction loss at the beginning of the last stage and in its end, W.
     pub fn losses(&self) -> (f64, f64) {
         let last = self.last.loss_w();
-        (self.blocks.first().map_or(last, |b| b.rates[0].loss_w()), last)
+        (self.last_blocks().next().map_or(last, |b| b.rates[0].loss_w()), last)
+    }
+
+    /// Energy lost in the last stage, J, and its length, s.
+    fn last_stage(&self) -> (f64, f64) {
+        let energy = |b: &Block| 0.5 * b.length_s * (b.rates[0].loss_w() + b.rates[1].loss_w());
+        self.last_blocks().fold((0.0, 0.0), |(e, t), b| (e + energy(b), t + b.length_s))
+    }
+
+    /// Blocks of the last stage.
+    fn last_blocks(&self) -> impl Iterator<Item = &Block> {
+        let last = self.blocks.last().map_or(0, |b| b.stage);
+        self.blocks.iter().filter(move |b| b.stage == last)
     }
 
     /// Sum of the depths of all cells of both surfaces, m.

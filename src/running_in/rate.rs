@@ -44,8 +44,8 @@ pub(super) fn worn(
     JournalBearing::new(setup).map_err(|e| MarchError::Parameters(e.to_string()))
 }
 
-/// Settles the cycle of a bearing with worn surfaces.
-pub(super) fn rate(
+/// Settles the cycle of a bearing with worn surfaces, from a similar one if there is one.
+pub fn settled_with_wear(
     model: &JournalBearing,
     worn_m: &SurfaceField,
     options: &OrbitOptions,

@@ -2,11 +2,12 @@
 
 use super::check::Study;
 use super::file::{CavitationName, CavityShearName, FilmModelName};
-use super::plans::{BearingPlan, LoadPlan};
+use super::plans::{BearingPlan, LoadPlan, OperatingPoint};
 use super::robust::RobustPlan;
 use super::vocabulary::QuantityName;
 use crate::cranktrain::{
-    BearingLoad, BearingSetup, Cylinder, HeatBalance, JournalBearing, LoadTable, MainLoad, VeeEngine,
+    BearingLoad, BearingParameter, BearingSetup, Cylinder, HeatBalance, JournalBearing, LoadTable, MainLoad,
+    VeeEngine,
 };
 use crate::dae::InvalidParameters;
 use crate::film::{Axial, Cavitation, CavityShear, FilmModel, Mesh, Reynolds, ShortFilm};
@@ -163,20 +164,46 @@ fn case(
     names: &[QuantityName],
     film: Arc<dyn FilmModel>,
 ) -> Result<Case<JournalBearing>, InvalidParameters> {
-    let (plan, at) = (&study.bearings[bearing], &study.points[point]);
-    let mine = |p: &super::ParameterPlan| p.bearing.is_none_or(|b| b == bearing);
-    let all = study.variables().enumerate().filter(|(_, p)| mine(p));
-    let (variables, parameters) = all.map(|(j, p)| (j, p.variable.parameter)).unzip();
-    let load = Arc::new(load(study, &plan.load, at.load_factor)?);
-    let setup = BearingSetup { speed_rad_s: at.speed_rad_s, parameters, ..setup(study, plan, film, load) };
+    let at = &study.points[point];
+    let (model, variables) = bearing_with(study, bearing, at, None, film)?;
     Ok(Case {
-        model: JournalBearing::new(setup)?,
+        model,
         variables,
         quantities: names.iter().map(|q| q.of_cycle(study.sharpness).0).collect(),
         options: study.orbit,
-        objective: vec![(0, at.weight * f64::from(plan.count))],
+        objective: vec![(0, at.weight * f64::from(study.bearings[bearing].count))],
         part: point,
     })
+}
+
+/// A bearing at an operating point, if wanted with an oil temperature of its own, and which variables its parameters are.
+pub(super) fn bearing_at(
+    study: &Study,
+    bearing: usize,
+    at: &OperatingPoint,
+    inlet_k: Option<f64>,
+) -> Result<(JournalBearing, Vec<usize>), InvalidParameters> {
+    bearing_with(study, bearing, at, inlet_k, film(study, bearing))
+}
+
+fn bearing_with(
+    study: &Study,
+    bearing: usize,
+    at: &OperatingPoint,
+    inlet_k: Option<f64>,
+    film: Arc<dyn FilmModel>,
+) -> Result<(JournalBearing, Vec<usize>), InvalidParameters> {
+    let plan = &study.bearings[bearing];
+    let own = |p: &super::ParameterPlan| p.variable.parameter == BearingParameter::InletTemperature;
+    let mine =
+        |p: &super::ParameterPlan| p.bearing.is_none_or(|b| b == bearing) && !(inlet_k.is_some() && own(p));
+    let all = study.variables().enumerate().filter(|(_, p)| mine(p));
+    let (variables, parameters) = all.map(|(j, p)| (j, p.variable.parameter)).unzip();
+    let load = Arc::new(load(study, &plan.load, at.load_factor)?);
+    let mut setup =
+        BearingSetup { speed_rad_s: at.speed_rad_s, parameters, ..setup(study, plan, film, load) };
+    setup.inlet_temperature_k = inlet_k.unwrap_or(setup.inlet_temperature_k);
+    Ok((JournalBearing::new(setup)?, variables))
 }
 
 /// A bearing as it stands in the study.

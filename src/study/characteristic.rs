@@ -45,6 +45,7 @@ pub(super) fn refuse_search(file: &StudyFile, faults: &mut Faults) -> bool {
     faults.unused(&file.linear_constraints, "linear_constraints", why);
     faults.unused(&file.robust, "robust", why);
     faults.unused(&file.choices, "choices", why);
+    faults.unused(&file.running_in, "running_in", why);
     true
 }
 

@@ -12,6 +12,7 @@ use super::oil::OilUse;
 use super::pareto::ParetoPlan;
 use super::plans::{BearingPlan, ConstraintPlan, FilmPlan, OilPlan, OperatingPoint, ParameterPlan};
 use super::robust::{RobustPlan, robust};
+use super::running_in::{RunningInPlan, running_in};
 use super::searches::SearchPlan;
 use super::{
     FORMAT, bearings, characteristic, comparison, constraints, film, heat, loads, oil, parameters, pareto,
@@ -66,6 +67,7 @@ pub struct Study {
     pub(super) linear: Vec<LinearPlan>,
     pub(super) worst_case: bool,
     pub(super) robust: Option<RobustPlan>,
+    pub(super) running_in: Option<RunningInPlan>,
     pub(super) choices: Option<Choices>,
     /// Hash of the study whose design the starts are.
     pub(super) started_from: Option<String>,
@@ -188,6 +190,7 @@ pub(super) fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Fault
         linear,
         worst_case,
         robust,
+        running_in,
     } = search?;
     let mut study = Study {
         hash: String::new(),
@@ -201,6 +204,7 @@ pub(super) fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Fault
         linear,
         worst_case,
         robust,
+        running_in,
         choices: None,
         started_from: None,
         film: film?,
@@ -237,6 +241,7 @@ struct Search {
     linear: Vec<LinearPlan>,
     worst_case: bool,
     robust: Option<RobustPlan>,
+    running_in: Option<RunningInPlan>,
 }
 
 impl Search {
@@ -255,6 +260,7 @@ impl Search {
             linear: Vec::new(),
             worst_case: false,
             robust: None,
+            running_in: None,
         }
     }
 }
@@ -273,6 +279,7 @@ fn search(
     let comparison = comparison::comparison(file, all, faults);
     let pareto = pareto::pareto(file, named, faults);
     let linear = linear_constraints(file, parameters.as_deref().unwrap_or_default(), faults);
+    let running_in = running_in(file, named, film, faults);
     let robust = robust(file, named, film, parameters.as_deref().unwrap_or_default(), faults);
     let (gradient, optimiser) = match file.comparison.is_absent() {
         true => (sections::gradient(file, faults), sections::optimiser(file, faults)),
@@ -281,6 +288,7 @@ fn search(
             faults.unused(&file.robust, "robust", comparison::WHY);
             faults.unused(&file.linear_constraints, "linear_constraints", comparison::WHY);
             faults.unused(&file.choices, "choices", comparison::WHY);
+            faults.unused(&file.running_in, "running_in", comparison::WHY);
             let perturbation = comparison::perturbation(file, faults);
             (perturbation.map(|eps| (EngineName::Adj, eps)), comparison::sharpness(file, faults))
         }
@@ -299,6 +307,7 @@ fn search(
         linear,
         worst_case: worst_case?,
         robust,
+        running_in,
     })
 }
 

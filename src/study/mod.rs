@@ -43,6 +43,7 @@ mod rheology;
 mod robust;
 mod roughness;
 mod run;
+mod running_in;
 mod schema;
 mod searches;
 mod sections;

@@ -10,7 +10,7 @@ use super::limits::{constraints, linear, unknown_constraints};
 use super::methods::methods;
 use super::pareto::front;
 use super::searches::{Searched, rivals, searches};
-use super::{observe, robust};
+use super::{observe, robust, running_in};
 use crate::optimise::{Minimum, Outcome, curvature};
 use crate::report::{
     Assumption, CostReport, Curves, Findings, KktReport, ObjectiveReport, OutcomeReport, Provenance,
@@ -41,9 +41,13 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
     stage("checking the design");
     let known = minimum.values.as_ref().and_then(|_| revisit(study, plan, minimum, context));
     let optimum = known.as_ref().map(|known| known.optimum.clone());
+    let known_design = known.is_some();
     let mut findings = report(study, &searched, known, context);
     if let (Some(optimum), false) = (optimum, context.cancel.is_cancelled()) {
         findings.report.robust = robust::report(study, plan, &minimum.x, optimum, context);
+    }
+    if known_design && !context.cancel.is_cancelled() {
+        findings.report.running_in = running_in::report(study, plan, &minimum.x, context);
     }
     findings.report.choices = choices;
     findings.report.study_hash = given.hash.clone();
@@ -162,6 +166,7 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
         starts: None,
         pareto: None,
         robust: None,
+        running_in: None,
         choices: None,
         linear_constraints: Vec::new(),
         rivals: Vec::new(),

@@ -47,8 +47,8 @@ pub use oil::{
 };
 pub use search::{
     AggregateName, ChoiceFile, ConstraintFile, GradientFile, LinearConstraintFile, ObjectiveFile,
-    OperatingPointFile, OptimiserFile, OptionFile, ParameterFile, ParetoFile, RobustFile, TermFile,
-    ToleranceFile,
+    OperatingPointFile, OptimiserFile, OptionFile, ParameterFile, ParetoFile, RobustFile, RunningInFile,
+    StageFile, TermFile, ToleranceFile,
 };
 pub use surface::{ContactIntegralName, ContactName, RoughnessFile, ShapeFile, ShapeKind, SurfaceName};
 
@@ -111,6 +111,8 @@ section! {
         linear_constraints: Vec<Given<LinearConstraintFile>>,
         /// Margins for what scatters.
         robust: RobustFile,
+        /// Running-in of the design that is found.
+        running_in: RunningInFile,
         /// What is chosen from lists.
         choices: Vec<Given<ChoiceFile>>,
         /// The least loss for each of a list of limits on another quantity.

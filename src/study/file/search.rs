@@ -4,7 +4,7 @@ use super::QuantityText;
 use crate::gradient::EngineName;
 use crate::optimise::Method;
 use crate::study::{Given, QuantityName};
-use crate::units::{Duration, Rotation};
+use crate::units::{Duration, Length, Rotation, Temperature};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -141,6 +141,36 @@ section! {
         samples: u64,
         /// Seed of the draw. Default 1.
         seed: u64,
+    }
+}
+
+section! {
+    /// One operating point of a running-in programme.
+    StageFile {
+        /// Name in reports.
+        name: String,
+        /// How long it lasts.
+        duration: Duration,
+        /// Speed of the crankshaft.
+        speed: Rotation,
+        /// Factor on the cylinder pressure (or on the tabulated load). Default 1.
+        load_factor: f64,
+        /// Temperature of the oil at the inlet. Default: that of the design.
+        oil_inlet_temperature: Temperature,
+    }
+}
+
+section! {
+    /// Running-in of the design that is found: bearings wear by roughness.wear_coefficient where they touch.
+    RunningInFile {
+        /// The programme.
+        stages: Vec<Given<StageFile>>,
+        /// Error of the wear depth that one block of the march may have. Default "0.02 um".
+        wear_depth_tolerance: Length,
+        /// Share of the wear that the journal takes. Default 0.
+        journal_share: f64,
+        /// Blocks at most. Default 500.
+        max_blocks: usize,
     }
 }
 

@@ -1,0 +1,171 @@
+//! Running-in: how losses and surfaces change over a programme.
+
+use super::csv_file::written;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The design that was found, run in.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RunningInReport {
+    /// The programme.
+    pub stages: Vec<StageReport>,
+    /// Error of the wear depth that a block may have, um.
+    pub wear_depth_tolerance_um: f64,
+    /// One entry per bearing.
+    pub bearings: Vec<BearingRunningIn>,
+}
+
+/// A stage of the programme.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StageReport {
+    /// Its name.
+    pub name: String,
+    /// How long it lasts, h.
+    pub duration_h: f64,
+    /// Speed of the crankshaft, rpm.
+    pub speed_rpm: f64,
+    /// Factor on the load.
+    pub load_factor: f64,
+}
+
+/// Running-in of one bearing.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct BearingRunningIn {
+    /// The bearing.
+    pub bearing: String,
+    /// Why there is none, if it failed.
+    pub failure: Option<String>,
+    /// Mean friction loss at the beginning of the last stage, W.
+    pub first_loss_w: f64,
+    /// Mean friction loss in its end, W.
+    pub final_loss_w: f64,
+    /// Share of contact in the first of these losses.
+    pub first_contact_share: f64,
+    /// Share of contact in the last.
+    pub final_contact_share: f64,
+    /// Mean over the programme, W: the friction loss that takes wear into account.
+    pub mean_loss_w: f64,
+    /// Energy lost to friction over the programme, kJ.
+    pub energy_lost_kj: f64,
+    /// Volume worn off, mm3.
+    pub wear_volume_mm3: f64,
+    /// Largest depth worn off the shell, um.
+    pub max_wear_depth_um: f64,
+    /// Time constant with which the loss falls in the last stage, h; none if it does not.
+    pub time_to_run_in_h: Option<f64>,
+    /// The operating points of the objective with new and with run-in surfaces.
+    pub operating_points: Vec<BeforeAfter>,
+    /// The programme in blocks: what stood at the beginning of each, and at the end of each stage.
+    pub blocks: Vec<RunningInBlock>,
+    /// Blocks of the march.
+    pub count: usize,
+    /// Blocks that were tried and found too long.
+    pub refused_blocks: usize,
+    /// Cycles simulated.
+    pub simulations: u64,
+    /// Depth worn off the shell in the end, um: rows around from 0 deg, columns from edge to edge.
+    pub wear_depth_um: Vec<Vec<f64>>,
+    /// Depth worn off the journal, um, on a grid that turns with it; empty if the shell takes all wear.
+    pub journal_wear_depth_um: Vec<Vec<f64>>,
+    /// Width of the bearing, mm.
+    pub width_mm: f64,
+}
+
+/// An operating point with new and with run-in surfaces.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct BeforeAfter {
+    /// Its name.
+    pub operating_point: String,
+    /// New.
+    pub new: CycleState,
+    /// Run in; none if it could not be simulated.
+    pub run_in: Option<CycleState>,
+}
+
+/// A cycle in four numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CycleState {
+    /// Mean friction loss, W.
+    pub loss_w: f64,
+    /// Its contact part, W.
+    pub contact_loss_w: f64,
+    /// Smallest film thickness, um.
+    pub min_film_thickness_um: f64,
+    /// Largest contact pressure, MPa.
+    pub max_contact_pressure_mpa: f64,
+}
+
+/// A moment of a programme.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RunningInBlock {
+    /// Stage.
+    pub stage: String,
+    /// Time since the beginning, h.
+    pub time_h: f64,
+    /// Mean friction loss of the cycle, W.
+    pub loss_w: f64,
+    /// Its contact part, W.
+    pub contact_loss_w: f64,
+    /// Share of contact in the loss.
+    pub contact_share: f64,
+    /// Smallest film thickness of the cycle, um.
+    pub min_film_thickness_um: f64,
+    /// Largest contact pressure of the cycle, MPa.
+    pub max_contact_pressure_mpa: f64,
+    /// Largest depth worn off the shell until then, um.
+    pub max_wear_depth_um: f64,
+    /// Volume worn off until then, mm3.
+    pub wear_volume_mm3: f64,
+}
+
+/// The blocks as text.
+pub fn running_in_csv(report: &RunningInReport) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "bearing",
+        "stage",
+        "time_h",
+        "loss_w",
+        "contact_loss_w",
+        "min_film_thickness_um",
+        "max_contact_pressure_mpa",
+        "max_wear_depth_um",
+        "wear_volume_mm3",
+    ])?;
+    for b in &report.bearings {
+        for m in &b.blocks {
+            let numbers = [
+                m.time_h,
+                m.loss_w,
+                m.contact_loss_w,
+                m.min_film_thickness_um,
+                m.max_contact_pressure_mpa,
+                m.max_wear_depth_um,
+                m.wear_volume_mm3,
+            ];
+            let labels = [b.bearing.clone(), m.stage.clone()];
+            writer.write_record(labels.into_iter().chain(numbers.iter().map(|v| format!("{v:.9e}"))))?;
+        }
+    }
+    written(writer)
+}
+
+/// The worn surfaces as text.
+pub fn wear_csv(report: &RunningInReport) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["bearing", "surface", "angle_deg", "axial_mm", "wear_depth_um"])?;
+    for b in &report.bearings {
+        for (surface, field) in [("shell", &b.wear_depth_um), ("journal", &b.journal_wear_depth_um)] {
+            for (i, row) in field.iter().enumerate() {
+                let angle = 360.0 * i as f64 / field.len() as f64;
+                for (j, depth) in row.iter().enumerate() {
+                    let axial = b.width_mm * ((j as f64 + 0.5) / row.len() as f64 - 0.5);
+                    let numbers = [format!("{angle:.4}"), format!("{axial:.4}"), format!("{depth:.9e}")];
+                    let labels = [b.bearing.clone(), surface.to_owned()];
+                    writer.write_record(labels.into_iter().chain(numbers))?;
+                }
+            }
+        }
+    }
+    written(writer)
+}
