@@ -205,6 +205,8 @@ dimensions! {
     /// A volume worn off per load and way: hardness in the denominator.
     WearCoefficientKind, WearCoefficient, "a wear coefficient", "1e-8 mm3/(N m)",
         &[("mm3/(N m)", 1e-9, 0.0), ("m3/(N m)", 1.0, 0.0), ("1/Pa", 1.0, 0.0)];
+    /// A volume.
+    VolumeKind, Volume, "a volume", "2 mm3", &[("mm3", 1e-9, 0.0), ("cm3", 1e-6, 0.0), ("m3", 1.0, 0.0)];
     /// An amount of memory.
     InformationKind, Information, "an amount of memory", "1 GB",
         &[("GB", 1e9, 0.0), ("MB", 1e6, 0.0), ("kB", 1e3, 0.0), ("B", 1.0, 0.0)];

@@ -28,8 +28,8 @@ pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
 pub use html::html;
 pub use running_in::{
-    BearingRunningIn, BeforeAfter, CycleState, RunningInBlock, RunningInReport, StageReport, running_in_csv,
-    wear_csv,
+    BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, RunningInBlock, RunningInReport, StageReport,
+    WearLimitReport, running_in_csv, wear_csv,
 };
 pub use searches::{
     ChoiceReport, ChoiceRun, ChoicesReport, LinearReport, LocalOptimum, ParetoPoint, ParetoReport, RivalRun,

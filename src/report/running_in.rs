@@ -11,8 +11,46 @@ pub struct RunningInReport {
     pub stages: Vec<StageReport>,
     /// Error of the wear depth that a block may have, um.
     pub wear_depth_tolerance_um: f64,
+    /// What was minimised, if the design is one for running-in.
+    pub minimised: Option<MinimisedReport>,
+    /// Limits on wear, if the design is one for running-in.
+    pub limits: Vec<WearLimitReport>,
     /// One entry per bearing.
     pub bearings: Vec<BearingRunningIn>,
+}
+
+/// What a running-in design minimises.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MinimisedReport {
+    /// In words.
+    pub quantity: String,
+    /// At the start design, W.
+    pub start_w: f64,
+    /// At the design found, W.
+    pub optimum_w: f64,
+    /// Saving, per cent.
+    pub saving_percent: f64,
+}
+
+/// A limit on wear.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WearLimitReport {
+    /// "max-wear-depth" (a smooth maximum on the safe side) or "wear-volume".
+    pub quantity: String,
+    /// Bearing.
+    pub bearing: String,
+    /// Value the optimiser saw.
+    pub value: f64,
+    /// Limit.
+    pub limit: f64,
+    /// Unit of both.
+    pub unit: String,
+    /// Whether it holds the design back.
+    pub active: bool,
+    /// Whether it is kept.
+    pub met: bool,
+    /// What one unit more of room would save, W.
+    pub price_w_per_unit: f64,
 }
 
 /// A stage of the programme.

@@ -60,7 +60,8 @@ pub(super) fn price_parameters(study: &Study, found: &Searched, design: &mut [De
     let optimal = matches!(minimum.outcome, Outcome::Converged | Outcome::AlmostConverged);
     for (j, (d, p)) in design.iter_mut().zip(&study.parameters).enumerate() {
         let width = p.upper - p.lower;
-        d.effect_w_per_percent = Some(0.01 * width * slopes[j]);
+        // Of a running-in design the loss of new surfaces is not what was minimised.
+        d.effect_w_per_percent = (!study.runs_in()).then_some(0.01 * width * slopes[j]);
         let price = match d.at_bound {
             AtBound::No => None,
             AtBound::Lower => minimum.multipliers.lower.get(j),
@@ -83,6 +84,10 @@ fn start_violation(study: &Study, plan: &Plan) -> Option<f64> {
 /// What is minimised.
 pub(super) fn objective_words(study: &Study) -> String {
     match (study.worst_case, &study.robust) {
+        _ if study.runs_in() => {
+            "friction loss of the running-in (see running_in); here that of new surfaces, all bearings, W"
+                .to_owned()
+        }
         (true, _) => "largest weighted mean friction loss of an operating point, all bearings, W".to_owned(),
         (_, Some(r)) => {
             format!("weighted mean friction loss of all bearings, with {} standard deviations, W", r.sigmas)

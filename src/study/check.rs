@@ -117,6 +117,11 @@ impl Study {
         Err(StudyErrors { faults, text: text.to_owned() })
     }
 
+    /// Whether a running-in design is searched.
+    pub(super) fn runs_in(&self) -> bool {
+        self.running_in.as_ref().is_some_and(|r| r.minimise.is_some())
+    }
+
     /// Everything a gradient is taken by: the design parameters, then what scatters without being one.
     pub(super) fn variables(&self) -> impl Iterator<Item = &ParameterPlan> {
         self.parameters.iter().chain(self.robust.iter().flat_map(|r| &r.beside))

@@ -9,11 +9,11 @@ use crate::report::{ConstraintReport, Curves, LinearReport};
 use crate::units::tidy;
 
 /// Relative distance from its limit up to which a constraint can be active.
-const ACTIVE_GAP: f64 = 1e-4;
+pub(super) const ACTIVE_GAP: f64 = 1e-4;
 /// Relative violation that counts as none.
-const MET: f64 = 1e-7;
+pub(super) const MET: f64 = 1e-7;
 /// A constraint whose multiplier exceeds this share of the objective is active.
-const ACTIVE: f64 = 1e-6;
+pub(super) const ACTIVE: f64 = 1e-6;
 
 /// The limits when no design was simulated.
 pub(super) fn unknown_constraints(study: &Study) -> Vec<ConstraintReport> {

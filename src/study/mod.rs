@@ -44,6 +44,7 @@ mod robust;
 mod roughness;
 mod run;
 mod running_in;
+mod running_in_design;
 mod schema;
 mod searches;
 mod sections;

@@ -107,7 +107,7 @@ pub(super) fn front<'r>(
             plan.problem.begin_beside(cycles);
         }
         let start = start.clone();
-        let Ok(end) = seek(&moved, &plan, &start, &study.optimiser.options) else { continue };
+        let Ok(end) = seek(&moved, &plan, &start, &study.optimiser.options, context) else { continue };
         let minimum = end.minimum;
         points.push(point(&moved, wanted, &plan, &minimum, *limit));
         let (own, beyond) = plan.problem.costs();

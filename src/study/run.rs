@@ -47,7 +47,7 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
         findings.report.robust = robust::report(study, plan, &minimum.x, optimum, context);
     }
     if known_design && !context.cancel.is_cancelled() {
-        findings.report.running_in = running_in::report(study, plan, &minimum.x, context);
+        findings.report.running_in = running_in::report(study, &searched, context);
     }
     findings.report.choices = choices;
     findings.report.study_hash = given.hash.clone();
@@ -56,7 +56,8 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
     let front = front(study, &searched, context, store);
     findings.report.starts = searched.starts;
     // Everything that was simulated for this report, whichever search asked for it.
-    let all = [plan.problem.costs(), searched.others, of_rivals];
+    let marches = (searched.marches, Cost::default());
+    let all = [plan.problem.costs(), searched.others, of_rivals, marches];
     let mut sum = all.into_iter().fold((Cost::default(), Cost::default()), |a, c| (a.0 + c.0, a.1 + c.1));
     if let Some((front, cost)) = front {
         findings.report.pareto = Some(front);
@@ -106,7 +107,7 @@ fn report(study: &Study, found: &Searched, known: Option<Known>, context: RunCon
             report.objective.saving_percent = None;
         }
         if minimum.outcome != Outcome::Cancelled {
-            let plain = study.robust.is_none() && !study.worst_case;
+            let plain = study.robust.is_none() && !study.worst_case && !study.runs_in();
             if plain && matches!(minimum.outcome, Outcome::Converged | Outcome::AlmostConverged) {
                 report.kkt.curvature = curvature(&plan.problem, &minimum.x, &minimum.multipliers).ok();
                 report.kkt.verdict = report.kkt.curvature.as_ref().map(|c| c.verdict().to_owned());

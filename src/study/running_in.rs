@@ -5,13 +5,18 @@ use super::bearings::Bearings;
 use super::build::{Plan, bearing_at};
 use super::check::Study;
 use super::faults::{Faults, join};
-use super::file::{FilmModelName, RunningInFile, StageFile, StudyFile};
-use super::plans::{FilmPlan, OperatingPoint};
+use super::file::{AggregateName, FilmModelName, RunningInFile, RunningInGoalName, StageFile, StudyFile};
+use super::limits::{ACTIVE, ACTIVE_GAP, MET};
+use super::plans::{BearingPlan, FilmPlan, OperatingPoint};
+use super::searches::Searched;
 use crate::cranktrain::{BearingOutput, JournalBearing, SurfaceField};
 use crate::dae::{Dae, InvalidParameters};
 use crate::film::Axial;
+use crate::gradient::EngineName;
+use crate::optimise::Minimum;
 use crate::report::{
-    BearingRunningIn, BeforeAfter, CycleState, RunningInBlock, RunningInReport, StageReport,
+    BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, RunningInBlock, RunningInReport, StageReport,
+    WearLimitReport,
 };
 use crate::run::{Event, RunContext};
 use crate::running_in::{
@@ -29,6 +34,12 @@ pub(super) struct RunningInPlan {
     tolerance_m: f64,
     journal_share: f64,
     max_blocks: usize,
+    /// What a running-in design minimises; none if the design is searched without regard to wear.
+    pub minimise: Option<RunningInQuantity>,
+    /// Largest wear depth of any shell, m.
+    pub max_depth_m: Option<f64>,
+    /// Largest worn volume of any bearing, m3.
+    pub max_volume_m3: Option<f64>,
 }
 
 /// A checked stage.
@@ -48,6 +59,16 @@ pub(super) fn running_in(
     faults: &mut Faults,
 ) -> Option<RunningInPlan> {
     faults.get(&file.running_in, PATH);
+    let worst = file.objective.value().and_then(|o| o.aggregate.value()) == Some(&AggregateName::WorstCase);
+    let polish = file.optimiser.value().and_then(|o| o.polish.value()) == Some(&true);
+    let engine = file.gradient.value().and_then(|g| g.engine.value());
+    let others = [
+        (worst, "objective.aggregate = \"worst-case\""),
+        (!file.robust.is_absent(), "[robust]"),
+        (!file.pareto.is_absent(), "[pareto]"),
+        (polish, "optimiser.polish"),
+        (engine.is_some_and(|e| *e != EngineName::Adj), "a gradient engine other than ADJ"),
+    ];
     let Given::Value(r) = &mut file.running_in else { return None };
     faults.unknown::<RunningInFile>(&r.unknown, PATH);
     let at = |key: &str| join(PATH, key);
@@ -66,6 +87,24 @@ pub(super) fn running_in(
     faults.range(Some(journal_share), &at("journal_share"), |v| (0.0..=1.0).contains(&v), "between 0 and 1");
     let counted = |v: f64| (1.0..=1e5).contains(&v);
     faults.range(Some(max_blocks as f64), &at("max_blocks"), counted, "between 1 and 100000");
+    let goal = faults.get(&r.minimise, &at("minimise"));
+    let minimise = goal.map(|goal| match goal {
+        RunningInGoalName::MeanLoss => RunningInQuantity::MeanLoss,
+        RunningInGoalName::FinalLoss => RunningInQuantity::FinalLoss,
+    });
+    let max_depth_m = faults.get(&r.max_wear_depth, &at("max_wear_depth")).map(|v| v.si());
+    let max_volume_m3 = faults.get(&r.max_wear_volume, &at("max_wear_volume")).map(|v| v.si());
+    faults.range(max_depth_m, &at("max_wear_depth"), |v| v > 0.0, "above zero");
+    faults.range(max_volume_m3, &at("max_wear_volume"), |v| v > 0.0, "above zero");
+    if r.minimise.is_absent() {
+        let why = "only a running-in design is searched within wear limits; give running_in.minimise";
+        faults.unused(&r.max_wear_depth, &at("max_wear_depth"), why);
+        faults.unused(&r.max_wear_volume, &at("max_wear_volume"), why);
+    } else {
+        for (_, key) in others.into_iter().filter(|(given, _)| *given) {
+            faults.add(&at("minimise"), format!("does not go together with {key}; remove one of them"));
+        }
+    }
     faults.need(&r.stages, &at("stages"));
     let Given::Value(list) = &mut r.stages else { return None };
     if list.is_empty() {
@@ -78,7 +117,15 @@ pub(super) fn running_in(
         let Given::Value(s) = given else { continue };
         stages.extend(stage(s, &path, faults));
     }
-    Some(RunningInPlan { stages, tolerance_m, journal_share, max_blocks })
+    Some(RunningInPlan {
+        stages,
+        tolerance_m,
+        journal_share,
+        max_blocks,
+        minimise,
+        max_depth_m,
+        max_volume_m3,
+    })
 }
 
 fn stage(s: &mut StageFile, path: &str, faults: &mut Faults) -> Option<StagePlan> {
@@ -100,13 +147,9 @@ fn stage(s: &mut StageFile, path: &str, faults: &mut Faults) -> Option<StagePlan
 }
 
 /// Runs in every bearing of a design; none if the study does not ask for it.
-pub(super) fn report(
-    study: &Study,
-    plan: &Plan,
-    x: &[f64],
-    context: RunContext<'_>,
-) -> Option<RunningInReport> {
+pub(super) fn report(study: &Study, found: &Searched, context: RunContext<'_>) -> Option<RunningInReport> {
     let wanted = study.running_in.as_ref()?;
+    let (plan, x) = (&found.plan, found.minimum.x.as_slice());
     let stage = |s: &StagePlan| StageReport {
         name: s.point.name.clone(),
         duration_h: s.duration_s / HOUR_S,
@@ -117,25 +160,80 @@ pub(super) fn report(
     Some(RunningInReport {
         stages: wanted.stages.iter().map(stage).collect(),
         wear_depth_tolerance_um: wanted.tolerance_m * 1e6,
+        minimised: minimised(wanted, &found.minimum),
+        limits: limits(study, wanted, found),
         bearings: bearings.collect(),
     })
 }
 
-/// The stages of a bearing at a design.
-fn stages(
+/// What a running-in design minimised.
+fn minimised(wanted: &RunningInPlan, end: &Minimum) -> Option<MinimisedReport> {
+    let quantity = match wanted.minimise? {
+        RunningInQuantity::FinalLoss => "friction loss in the end, all bearings",
+        _ => "friction loss meant over the programme, all bearings",
+    };
+    let (start_w, optimum_w) = (end.history.first()?.objective_w, end.values.as_ref()?.objective);
+    let (quantity, saving_percent) = (quantity.to_owned(), 100.0 * (1.0 - optimum_w / start_w));
+    Some(MinimisedReport { quantity, start_w, optimum_w, saving_percent })
+}
+
+/// The limits on wear of a running-in design: behind those of the study, per bearing.
+fn limits(study: &Study, wanted: &RunningInPlan, found: &Searched) -> Vec<WearLimitReport> {
+    let Some(values) = found.minimum.values.as_ref().filter(|_| wanted.minimise.is_some()) else {
+        return Vec::new();
+    };
+    let kinds = [
+        ("max-wear-depth", wanted.max_depth_m, 1e6, "um"),
+        ("wear-volume", wanted.max_volume_m3, 1e9, "mm3"),
+    ];
+    let asked =
+        || kinds.iter().filter_map(|(name, limit, scale, unit)| Some((*name, (*limit)?, *scale, *unit)));
+    let all = study.bearings.iter().flat_map(|b| asked().map(move |a| (b, a)));
+    let row = |((b, (name, limit, scale, unit)), k): ((&BearingPlan, (&str, f64, f64, &str)), usize)| {
+        let excess = *values.inequalities.get(k)?;
+        let multiplier = found.minimum.multipliers.inequalities.get(k).copied().unwrap_or(0.0);
+        let active = excess > -ACTIVE_GAP && multiplier > ACTIVE * values.objective.abs();
+        Some(WearLimitReport {
+            quantity: name.to_owned(),
+            bearing: b.name.clone(),
+            value: (1.0 + excess) * limit * scale,
+            limit: limit * scale,
+            unit: unit.to_owned(),
+            active,
+            met: excess <= study.optimiser.options.settings.tolerance.max(MET),
+            price_w_per_unit: if active { multiplier / (limit * scale) } else { 0.0 },
+        })
+    };
+    all.zip(found.plan.limits.len()..).filter_map(row).collect()
+}
+
+/// The stages of a bearing at a design, and which variables the parameters of each are.
+pub(super) fn stages(
     study: &Study,
     wanted: &RunningInPlan,
     plan: &Plan,
     bearing: usize,
     x: &[f64],
-) -> Result<Vec<Stage>, InvalidParameters> {
+) -> Result<(Vec<Stage>, Vec<Vec<usize>>), InvalidParameters> {
     let whole = plan.problem.whole(x);
     let of = |s: &StagePlan| {
         let (model, variables) = bearing_at(study, bearing, &s.point, s.inlet_k)?;
         let p: Vec<f64> = variables.iter().map(|&j| whole[j]).collect();
-        Ok(Stage { model: model.with_parameters(&p)?, duration_s: s.duration_s })
+        Ok((Stage { model: model.with_parameters(&p)?, duration_s: s.duration_s }, variables))
     };
     wanted.stages.iter().map(of).collect()
+}
+
+/// How a bearing is marched through its programme.
+pub(super) fn march_options(study: &Study, wanted: &RunningInPlan, bearing: usize) -> MarchOptions {
+    let rough = study.bearings[bearing].roughness.as_ref();
+    MarchOptions {
+        wear_m3_per_n_m: rough.map_or(0.0, |r| r.wear_m3_per_j * r.film.boundary_friction),
+        journal_share: wanted.journal_share,
+        tolerance_m: wanted.tolerance_m,
+        max_blocks: wanted.max_blocks,
+        orbit: study.orbit,
+    }
 }
 
 fn bearing(
@@ -148,17 +246,9 @@ fn bearing(
 ) -> BearingRunningIn {
     let own = &study.bearings[bearing];
     let mut found = BearingRunningIn { bearing: own.name.clone(), ..BearingRunningIn::default() };
-    let Some(rough) = &own.roughness else { return found };
-    let friction = rough.film.boundary_friction;
-    let options = MarchOptions {
-        wear_m3_per_n_m: rough.wear_m3_per_j * friction,
-        journal_share: wanted.journal_share,
-        tolerance_m: wanted.tolerance_m,
-        max_blocks: wanted.max_blocks,
-        orbit: study.orbit,
-    };
+    let options = march_options(study, wanted, bearing);
     let stages = match stages(study, wanted, plan, bearing, x) {
-        Ok(stages) => stages,
+        Ok((stages, _)) => stages,
         Err(e) => return BearingRunningIn { failure: Some(e.to_string()), ..found },
     };
     let total_s: f64 = stages.iter().map(|s| s.duration_s).sum();

@@ -42,6 +42,8 @@ pub(super) struct Searched<'r> {
     pub shares: Vec<f64>,
     /// What polishing did.
     pub polished: Option<Polished>,
+    /// Work of all marches through running-in.
+    pub marches: Cost,
     /// All searches, if there were several.
     pub starts: Option<StartsReport>,
     /// Work of the searches that did not win: simulations, and gradients beyond them.
@@ -77,8 +79,9 @@ pub(super) fn searches<'r>(
             context.progress.tell(&Event::Stage { name });
         }
         let start = from.unwrap_or(&plan.start).to_vec();
-        let End { minimum, shares, polished } = seek(study, &plan, &start, options)?;
-        return Ok(Searched { plan, minimum, shares, polished, starts: None, others: Default::default() });
+        let End { minimum, shares, polished, marches } = seek(study, &plan, &start, options, context)?;
+        let others = Default::default();
+        return Ok(Searched { plan, minimum, shares, polished, marches, starts: None, others });
     }
     let mut starts = starts(study);
     if let Some(from) = from {
@@ -91,7 +94,7 @@ pub(super) fn searches<'r>(
             let quiet = RunContext { progress: &Silent, ..context };
             let mut plan = plan(study, study.engine, quiet).map_err(|e| e.to_string())?;
             resume(study, &mut plan, format!("{prefix}start-{k}"), store);
-            let end = seek(study, &plan, start, options)?;
+            let end = seek(study, &plan, start, options, quiet)?;
             let loss = end.minimum.values.as_ref().map_or(f64::NAN, |v| v.objective);
             let name = format!("start {} of {}: {}", k + 1, starts.len(), crate::report::short(loss));
             context.progress.tell(&Event::Stage { name: format!("{name} W") });
@@ -103,14 +106,15 @@ pub(super) fn searches<'r>(
     let best = (0..ends.len())
         .min_by(|a, b| rank(&ends[*a].1.minimum).total_cmp(&rank(&ends[*b].1.minimum)))
         .unwrap_or(0);
-    let (mut plan, End { minimum, shares, polished }) = ends.swap_remove(best);
+    let marches = ends.iter().map(|(_, end)| end.marches).sum();
+    let (mut plan, End { minimum, shares, polished, .. }) = ends.swap_remove(best);
     let others = ends
         .iter()
         .map(|(p, _)| p.problem.costs())
         .fold((Cost::default(), Cost::default()), |a, c| (a.0 + c.0, a.1 + c.1));
     // The saving is against the study's start, whichever start led to the best design.
     plan.start = study.parameters.iter().map(|p| p.start).collect();
-    Ok(Searched { plan, minimum, shares, polished, starts: Some(report), others })
+    Ok(Searched { plan, minimum, shares, polished, marches, starts: Some(report), others })
 }
 
 /// Designs simulated for a plan.
@@ -233,7 +237,7 @@ fn rival_run<'r>(
     let mut plan = plan(study, engine, context).ok()?;
     resume(study, &mut plan, format!("rival-{k}"), store);
     let options = SearchOptions { method, ..study.optimiser.options };
-    let end = seek(study, &plan, &plan.start, &options).ok()?.minimum;
+    let end = seek(study, &plan, &plan.start, &options, context).ok()?.minimum;
     let (simulations, gradients) = plan.problem.costs();
     let per_cycle = simulations.factorisations as f64 / simulations.simulations.max(1) as f64;
     let cases = plan.cases.len() as f64;

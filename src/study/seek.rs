@@ -2,9 +2,11 @@
 
 use super::build::Plan;
 use super::check::Study;
+use super::running_in_design::RunningInProblem;
 use crate::optimise::{
     EvaluationError, Minimum, Outcome, Polished, SearchOptions, polish, search, search_worst,
 };
+use crate::run::{Cost, RunContext};
 
 /// A polish goes on to this share of the tolerance of the search.
 const POLISHED: f64 = 1e-4;
@@ -16,6 +18,8 @@ pub(super) struct End {
     pub shares: Vec<f64>,
     /// What polishing did, if it was wanted.
     pub polished: Option<Polished>,
+    /// Work of marches through running-in.
+    pub marches: Cost,
 }
 
 /// Searches from a start.
@@ -24,7 +28,15 @@ pub(super) fn seek(
     plan: &Plan,
     start: &[f64],
     options: &SearchOptions,
+    context: RunContext<'_>,
 ) -> Result<End, String> {
+    if let Some(wanted) = study.running_in.as_ref().filter(|r| r.minimise.is_some()) {
+        let problem = RunningInProblem::new(study, wanted, plan, start, context)
+            .map_err(|e| format!("the start design cannot be run in: {e}"))?;
+        let minimum = search(&problem, start, options).map_err(|e| e.to_string())?;
+        let marches = problem.cost();
+        return Ok(End { minimum, shares: Vec::new(), polished: None, marches });
+    }
     let (mut minimum, shares) = match &study.robust {
         _ if study.worst_case => search_worst(&plan.problem, start, options),
         Some(margins) => search(&margins.problem(plan), start, options).map(|end| (end, Vec::new())),
@@ -47,5 +59,5 @@ pub(super) fn seek(
             minimum.outcome = Outcome::Converged;
         }
     }
-    Ok(End { minimum, shares, polished })
+    Ok(End { minimum, shares, polished, marches: Cost::default() })
 }

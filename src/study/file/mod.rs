@@ -48,7 +48,7 @@ pub use oil::{
 pub use search::{
     AggregateName, ChoiceFile, ConstraintFile, GradientFile, LinearConstraintFile, ObjectiveFile,
     OperatingPointFile, OptimiserFile, OptionFile, ParameterFile, ParetoFile, RobustFile, RunningInFile,
-    StageFile, TermFile, ToleranceFile,
+    RunningInGoalName, StageFile, TermFile, ToleranceFile,
 };
 pub use surface::{ContactIntegralName, ContactName, RoughnessFile, ShapeFile, ShapeKind, SurfaceName};
 

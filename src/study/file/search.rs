@@ -4,7 +4,7 @@ use super::QuantityText;
 use crate::gradient::EngineName;
 use crate::optimise::Method;
 use crate::study::{Given, QuantityName};
-use crate::units::{Duration, Length, Rotation, Temperature};
+use crate::units::{Duration, Length, Rotation, Temperature, Volume};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -160,11 +160,27 @@ section! {
     }
 }
 
+words! {
+    /// What a running-in design minimises.
+    RunningInGoalName {
+        /// The friction loss meant over the programme: the energy lost.
+        MeanLoss,
+        /// The friction loss in the end, at the last stage.
+        FinalLoss,
+    }
+}
+
 section! {
     /// Running-in of the design that is found: bearings wear by roughness.wear_coefficient where they touch.
     RunningInFile {
         /// The programme.
         stages: Vec<Given<StageFile>>,
+        /// Searches a running-in design: "mean-loss" (over the programme) or "final-loss" is minimised instead of the loss of new surfaces at the operating points, where the limits hold all the same. Default: the design is searched without regard to wear and run in afterwards.
+        minimise: RunningInGoalName,
+        /// Largest wear depth of any shell. For a running-in design.
+        max_wear_depth: Length,
+        /// Largest volume worn off any bearing. For a running-in design.
+        max_wear_volume: Volume,
         /// Error of the wear depth that one block of the march may have. Default "0.02 um".
         wear_depth_tolerance: Length,
         /// Share of the wear that the journal takes. Default 0.

@@ -1,0 +1,170 @@
+//! The running-in design: least loss while the bearings wear, within limits on what they wear.
+//!
+//! ```text
+//! minimise  sum_bearings count * P_wear(x)  (or the loss in the end)    subject to the limits of the study with new surfaces,
+//!           largest wear depth and worn volume of every bearing within theirs
+//! ```
+//!
+//! The blocks of each march are those that its error control chose at the start design, so that values and gradients belong to one
+//! discrete problem (see [`crate::running_in`]); the run marches the design anew, with blocks of its own, and reports that.
+
+use super::build::Plan;
+use super::check::Study;
+use super::running_in::{RunningInPlan, march_options, stages};
+use crate::optimise::{ConstrainedProblem, EvaluationError, LinearConstraint, Slopes, Values};
+use crate::run::{Cost, IterationEvent, RunContext};
+use crate::running_in::{
+    March, MarchError, MarchOptions, RunningInGradient, RunningInQuantity, Stage, march, march_adjoint,
+    replay,
+};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+/// Sharpness of the smooth maximum of the wear depth.
+const SHARPNESS: f64 = 100.0;
+
+/// One bearing of the problem.
+struct Own {
+    bearing: usize,
+    count: f64,
+    options: MarchOptions,
+    shares: Vec<Vec<f64>>,
+}
+
+/// The problem; see the module page.
+pub(super) struct RunningInProblem<'p, 'r> {
+    study: &'p Study,
+    wanted: &'p RunningInPlan,
+    plan: &'p Plan<'r>,
+    context: RunContext<'p>,
+    own: Vec<Own>,
+    values: Mutex<BTreeMap<Vec<u64>, Values>>,
+    cost: Mutex<Cost>,
+}
+
+fn key(x: &[f64]) -> Vec<u64> {
+    x.iter().map(|v| v.to_bits()).collect()
+}
+
+fn refused(e: MarchError) -> EvaluationError {
+    match e {
+        MarchError::Cancelled => EvaluationError::Cancelled,
+        other => EvaluationError::Failed(other.to_string()),
+    }
+}
+
+impl<'p, 'r> RunningInProblem<'p, 'r> {
+    /// The problem with the blocks that its start design asks for.
+    pub fn new(
+        study: &'p Study,
+        wanted: &'p RunningInPlan,
+        plan: &'p Plan<'r>,
+        start: &[f64],
+        context: RunContext<'p>,
+    ) -> Result<Self, EvaluationError> {
+        let own = |bearing: usize| {
+            let plan_of = &study.bearings[bearing];
+            let options = march_options(study, wanted, bearing);
+            let (stages, _) = stages(study, wanted, plan, bearing, start)
+                .map_err(|e| EvaluationError::Failed(e.to_string()))?;
+            let found = march(&stages, &options, None, context.cancel, &mut |_| {}).map_err(refused)?;
+            let (count, shares) = (f64::from(plan_of.count), found.shares(&stages));
+            Ok(Own { bearing, count, options, shares })
+        };
+        let own: Result<Vec<Own>, EvaluationError> = (0..study.bearings.len()).map(own).collect();
+        let (values, cost) = (Mutex::default(), Mutex::default());
+        Ok(Self { study, wanted, plan, context, own: own?, values, cost })
+    }
+
+    /// Work of all marches and of their gradients.
+    pub fn cost(&self) -> Cost {
+        *self.cost.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
+
+    fn spend(&self, cost: Cost) {
+        *self.cost.lock().unwrap_or_else(std::sync::PoisonError::into_inner) += cost;
+    }
+
+    fn marched(&self, own: &Own, x: &[f64]) -> Result<(Vec<Stage>, Vec<Vec<usize>>, March), EvaluationError> {
+        let (stages, variables) = stages(self.study, self.wanted, self.plan, own.bearing, x)
+            .map_err(|e| EvaluationError::Failed(e.to_string()))?;
+        let found = replay(&stages, &own.shares, &own.options, None, self.context.cancel).map_err(refused)?;
+        self.spend(found.cost);
+        Ok((stages, variables, found))
+    }
+
+    /// Limited quantities with their limits.
+    fn limits(&self) -> Vec<(RunningInQuantity, f64)> {
+        let depth = self.wanted.max_depth_m.map(|limit| (RunningInQuantity::MaxDepth(SHARPNESS), limit));
+        let volume = self.wanted.max_volume_m3.map(|limit| (RunningInQuantity::WearVolume, limit));
+        depth.into_iter().chain(volume).collect()
+    }
+
+    fn minimised(&self) -> RunningInQuantity {
+        self.wanted.minimise.unwrap_or(RunningInQuantity::MeanLoss)
+    }
+}
+
+impl ConstrainedProblem for RunningInProblem<'_, '_> {
+    fn bounds(&self) -> (Vec<f64>, Vec<f64>) {
+        self.plan.problem.bounds()
+    }
+
+    fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
+        let known =
+            self.values.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get(&key(x)).cloned();
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let mut values = self.plan.problem.values(x)?;
+        let all: Result<Vec<_>, EvaluationError> =
+            self.own.par_iter().map(|own| Ok((own, self.marched(own, x)?))).collect();
+        values.objective = 0.0;
+        for (own, (stages, _, found)) in all? {
+            let Some(Stage { model, .. }) = stages.last() else { continue };
+            values.objective += own.count * self.minimised().value(&found, model);
+            let beyond = self.limits().into_iter().map(|(of, limit)| of.value(&found, model) / limit - 1.0);
+            values.inequalities.extend(beyond);
+        }
+        let mut memory = self.values.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        memory.insert(key(x), values.clone());
+        Ok(values)
+    }
+
+    fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
+        let mut slopes = self.plan.problem.slopes(x)?;
+        slopes.objective.fill(0.0);
+        for own in &self.own {
+            let (stages, variables, found) = self.marched(own, x)?;
+            let row = |of: RunningInQuantity, by: f64, into: &mut [f64]| -> Result<(), EvaluationError> {
+                let table: RunningInGradient =
+                    march_adjoint(&stages, &found, &own.options, of, self.context.cancel).map_err(refused)?;
+                self.spend(table.cost);
+                for (row, variables) in table.by_stage.iter().zip(&variables) {
+                    for (g, &j) in row.iter().zip(variables) {
+                        if let Some(entry) = into.get_mut(j) {
+                            *entry += by * g;
+                        }
+                    }
+                }
+                Ok(())
+            };
+            row(self.minimised(), own.count, &mut slopes.objective)?;
+            for (of, limit) in self.limits() {
+                let mut line = vec![0.0; x.len()];
+                row(of, 1.0 / limit, &mut line)?;
+                slopes.inequalities.push(line);
+            }
+        }
+        Ok(slopes)
+    }
+
+    fn linear(&self) -> Vec<LinearConstraint> {
+        self.plan.problem.linear()
+    }
+
+    fn accepted(&self, news: &IterationEvent) {
+        self.plan.problem.accepted(news);
+    }
+}
