@@ -223,3 +223,40 @@ fn a_study_runs_its_design_in_and_reports_it() {
     assert!(text("wear.csv").starts_with("bearing,surface,angle_deg,axial_mm,wear_depth_um"));
     assert!(text("report.html").contains("Running-in of the design") && !text("report.html").contains("NaN"));
 }
+
+#[test]
+fn a_running_in_design_loses_less_within_its_wear_limits() {
+    let programme = "[running_in]\nminimise = \"mean-loss\"\nmax_wear_volume = \"0.1 mm3\"\nwear_depth_tolerance = \"0.5 um\"\n\
+        [[running_in.stages]]\nname = \"rated\"\nduration = \"1 h\"\nspeed = \"1500 rpm\"\n";
+    let with = format!("{programme}{COARSE}");
+    let rough = "journal = \"0.4 um\"\nwear_coefficient = \"3e-7 mm3/(N m)\"";
+    let fixed = "name = \"big_end.diameter\"\nlower = \"112 mm\"\nupper = \"128 mm\"\n\n[[parameters]]\n";
+    let cooled =
+        "[[parameters]]\nname = \"oil.inlet_temperature\"\nlower = \"60 degC\"\nupper = \"90 degC\"\n\n";
+    let study = main_study(&[
+        ("[oil]", &with),
+        ("kind = \"big-end\"", "kind = \"big-end\"\ntilt_x = \"0.012 deg\""),
+        ("journal = \"0.2 um\"", rough),
+        (fixed, ""),
+        (cooled, ""),
+        (
+            "quantity = \"max-film-pressure\"\nat_most = \"300 MPa\"",
+            "quantity = \"contact-loss\"\nat_most = \"50 W\"",
+        ),
+        (
+            "quantity = \"min-film-thickness\"\nat_least = \"3 um\"",
+            "quantity = \"min-film-thickness\"\nat_least = \"0.2 um\"",
+        ),
+    ]);
+    let report = quietly(|context| stribeck::study::run(&study, context)).report;
+    let running_in = report.running_in.as_ref().unwrap();
+    println!("{:?} {:?} {:#?}", report.outcome, running_in.limits, report.design);
+    assert_eq!(report.outcome.status, stribeck::optimise::Outcome::Converged);
+    let limit = &running_in.limits[0];
+    assert!(limit.met && limit.active && limit.price_w_per_unit > 0.0, "{limit:?}");
+    // What the run marched anew agrees with what the search saw in its own blocks.
+    let (minimised, bearing) = (running_in.minimised.as_ref().unwrap(), &running_in.bearings[0]);
+    assert!((bearing.mean_loss_w / minimised.optimum_w - 1.0).abs() < 1e-3);
+    assert!((bearing.wear_volume_mm3 / limit.value - 1.0).abs() < 0.1);
+    assert!(report.objective.quantity.contains("running-in"));
+}

@@ -130,5 +130,20 @@ fn running_in(report: &Report) -> Option<String> {
             ]);
         }
     }
-    Some(format!("{rows}{failures}"))
+    let mut words = String::new();
+    if let Some(m) = &r.minimised {
+        let (start, optimum, saving) = (short(m.start_w), short(m.optimum_w), short(m.saving_percent));
+        words +=
+            &format!("\n{}: {start} W at the start, {optimum} W at the design, {saving} % saved", m.quantity);
+    }
+    for l in &r.limits {
+        let state = match (l.met, l.active) {
+            (false, _) => ", violated".to_owned(),
+            (true, true) => format!(", active, price {} W per {}", short(l.price_w_per_unit), l.unit),
+            (true, false) => String::new(),
+        };
+        let (value, limit) = (short(l.value), short(l.limit));
+        words += &format!("\n{} of {}: {value}, at most {limit} {}{state}", l.quantity, l.bearing, l.unit);
+    }
+    Some(format!("{rows}{words}{failures}"))
 }

@@ -43,6 +43,7 @@ mod rheology;
 mod robust;
 mod roughness;
 mod run;
+mod run_in;
 mod running_in;
 mod running_in_design;
 mod schema;

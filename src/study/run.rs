@@ -10,7 +10,7 @@ use super::limits::{constraints, linear, unknown_constraints};
 use super::methods::methods;
 use super::pareto::front;
 use super::searches::{Searched, rivals, searches};
-use super::{observe, robust, running_in};
+use super::{observe, robust, run_in};
 use crate::optimise::{Minimum, Outcome, curvature};
 use crate::report::{
     Assumption, CostReport, Curves, Findings, KktReport, ObjectiveReport, OutcomeReport, Provenance,
@@ -47,7 +47,7 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
         findings.report.robust = robust::report(study, plan, &minimum.x, optimum, context);
     }
     if known_design && !context.cancel.is_cancelled() {
-        findings.report.running_in = running_in::report(study, &searched, context);
+        findings.report.running_in = run_in::report(study, &searched, context);
     }
     findings.report.choices = choices;
     findings.report.study_hash = given.hash.clone();

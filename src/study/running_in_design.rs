@@ -32,6 +32,14 @@ struct Own {
     shares: Vec<Vec<f64>>,
 }
 
+/// A bearing marched through its programme at a design.
+struct Marched {
+    stages: Vec<Stage>,
+    /// Which variables the parameters of each stage are.
+    variables: Vec<Vec<usize>>,
+    found: March,
+}
+
 /// The problem; see the module page.
 pub(super) struct RunningInProblem<'p, 'r> {
     study: &'p Study,
@@ -86,12 +94,12 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
         *self.cost.lock().unwrap_or_else(std::sync::PoisonError::into_inner) += cost;
     }
 
-    fn marched(&self, own: &Own, x: &[f64]) -> Result<(Vec<Stage>, Vec<Vec<usize>>, March), EvaluationError> {
+    fn marched(&self, own: &Own, x: &[f64]) -> Result<Marched, EvaluationError> {
         let (stages, variables) = stages(self.study, self.wanted, self.plan, own.bearing, x)
             .map_err(|e| EvaluationError::Failed(e.to_string()))?;
         let found = replay(&stages, &own.shares, &own.options, None, self.context.cancel).map_err(refused)?;
         self.spend(found.cost);
-        Ok((stages, variables, found))
+        Ok(Marched { stages, variables, found })
     }
 
     /// Limited quantities with their limits.
@@ -121,7 +129,7 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
         let all: Result<Vec<_>, EvaluationError> =
             self.own.par_iter().map(|own| Ok((own, self.marched(own, x)?))).collect();
         values.objective = 0.0;
-        for (own, (stages, _, found)) in all? {
+        for (own, Marched { stages, found, .. }) in all? {
             let Some(Stage { model, .. }) = stages.last() else { continue };
             values.objective += own.count * self.minimised().value(&found, model);
             let beyond = self.limits().into_iter().map(|(of, limit)| of.value(&found, model) / limit - 1.0);
@@ -136,7 +144,7 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
         let mut slopes = self.plan.problem.slopes(x)?;
         slopes.objective.fill(0.0);
         for own in &self.own {
-            let (stages, variables, found) = self.marched(own, x)?;
+            let Marched { stages, variables, found } = self.marched(own, x)?;
             let row = |of: RunningInQuantity, by: f64, into: &mut [f64]| -> Result<(), EvaluationError> {
                 let table: RunningInGradient =
                     march_adjoint(&stages, &found, &own.options, of, self.context.cancel).map_err(refused)?;

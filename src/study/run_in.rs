@@ -1,0 +1,211 @@
+//! The design that was found, run in: the march of each bearing through the programme, and the report of it.
+
+use super::build::{Plan, bearing_at};
+use super::check::Study;
+use super::limits::{ACTIVE, ACTIVE_GAP, MET};
+use super::plans::OperatingPoint;
+use super::running_in::{RunningInPlan, StagePlan, march_options, stages};
+use super::searches::Searched;
+use crate::cranktrain::{BearingOutput, JournalBearing, SurfaceField};
+use crate::dae::Dae;
+use crate::film::Axial;
+use crate::optimise::Minimum;
+use crate::report::{
+    BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, RunningInBlock, RunningInReport, StageReport,
+    WearLimitReport,
+};
+use crate::run::{Event, RunContext};
+use crate::running_in::{Block, March, MarchError, Rate, RunningInQuantity, Stage, march, settled_with_wear};
+use crate::units::tidy;
+
+/// Seconds of an hour.
+const HOUR_S: f64 = 3600.0;
+
+/// Runs in every bearing of a design; none if the study does not ask for it.
+pub(super) fn report(study: &Study, found: &Searched, context: RunContext<'_>) -> Option<RunningInReport> {
+    let wanted = study.running_in.as_ref()?;
+    let (plan, x) = (&found.plan, found.minimum.x.as_slice());
+    let stage = |s: &StagePlan| StageReport {
+        name: s.point.name.clone(),
+        duration_h: s.duration_s / HOUR_S,
+        speed_rpm: s.point.speed_rad_s * 30.0 / std::f64::consts::PI,
+        load_factor: s.point.load_factor,
+    };
+    let bearings = (0..study.bearings.len()).map(|b| bearing(study, wanted, plan, b, x, context));
+    Some(RunningInReport {
+        stages: wanted.stages.iter().map(stage).collect(),
+        wear_depth_tolerance_um: wanted.tolerance_m * 1e6,
+        minimised: minimised(wanted, &found.minimum),
+        limits: limits(study, wanted, found),
+        bearings: bearings.collect(),
+    })
+}
+
+/// What a running-in design minimised.
+fn minimised(wanted: &RunningInPlan, end: &Minimum) -> Option<MinimisedReport> {
+    let quantity = match wanted.minimise? {
+        RunningInQuantity::FinalLoss => "friction loss in the end, all bearings",
+        _ => "friction loss meant over the programme, all bearings",
+    };
+    let (start_w, optimum_w) = (end.history.first()?.objective_w, end.values.as_ref()?.objective);
+    let (quantity, saving_percent) = (quantity.to_owned(), 100.0 * (1.0 - optimum_w / start_w));
+    Some(MinimisedReport { quantity, start_w, optimum_w, saving_percent })
+}
+
+/// The limits on wear of a running-in design: behind those of the study, per bearing.
+fn limits(study: &Study, wanted: &RunningInPlan, found: &Searched) -> Vec<WearLimitReport> {
+    let Some(values) = found.minimum.values.as_ref().filter(|_| wanted.minimise.is_some()) else {
+        return Vec::new();
+    };
+    let tolerance = study.optimiser.options.settings.tolerance.max(MET);
+    let kinds = [
+        ("max-wear-depth", wanted.max_depth_m, 1e6, "um"),
+        ("wear-volume", wanted.max_volume_m3, 1e9, "mm3"),
+    ];
+    let mut rows = Vec::new();
+    for bearing in &study.bearings {
+        for (name, limit, scale, unit) in kinds {
+            let k = found.plan.limits.len() + rows.len();
+            let (Some(limit), Some(excess)) = (limit, values.inequalities.get(k)) else { continue };
+            let multiplier = found.minimum.multipliers.inequalities.get(k).copied().unwrap_or(0.0);
+            let active = *excess > -ACTIVE_GAP && multiplier > ACTIVE * values.objective.abs();
+            rows.push(WearLimitReport {
+                quantity: name.to_owned(),
+                bearing: bearing.name.clone(),
+                value: (1.0 + excess) * limit * scale,
+                limit: tidy(limit * scale),
+                unit: unit.to_owned(),
+                active,
+                met: *excess <= tolerance,
+                price_w_per_unit: if active { multiplier / (limit * scale) } else { 0.0 },
+            });
+        }
+    }
+    rows
+}
+
+fn bearing(
+    study: &Study,
+    wanted: &RunningInPlan,
+    plan: &Plan,
+    bearing: usize,
+    x: &[f64],
+    context: RunContext<'_>,
+) -> BearingRunningIn {
+    let own = &study.bearings[bearing];
+    let mut found = BearingRunningIn { bearing: own.name.clone(), ..BearingRunningIn::default() };
+    let options = march_options(study, wanted, bearing);
+    let stages = match stages(study, wanted, plan, bearing, x) {
+        Ok((stages, _)) => stages,
+        Err(e) => return BearingRunningIn { failure: Some(e.to_string()), ..found },
+    };
+    let total_s: f64 = stages.iter().map(|s| s.duration_s).sum();
+    let mut tell = |block: &Block| {
+        let done = crate::report::short((1e3 * (block.from_s + block.length_s) / total_s).round() / 10.0);
+        let name = format!("running in {}: {done} % of the programme", own.name);
+        context.progress.tell(&Event::Stage { name });
+    };
+    match march(&stages, &options, None, context.cancel, &mut tell) {
+        Ok(march) => {
+            fill(&mut found, wanted, &stages, &march);
+            found.operating_points = before_after(study, plan, (bearing, x), &march, context);
+        }
+        Err(MarchError::Orbit(e)) => {
+            found.failure = Some(format!("a cycle with worn surfaces could not be simulated: {e}"));
+        }
+        Err(e) => found.failure = Some(e.to_string()),
+    }
+    found
+}
+
+/// The whole width of a field of cells, rows around.
+fn whole_width(model: &JournalBearing, field: &[f64], scale: f64) -> Vec<Vec<f64>> {
+    let scaled = field.iter().map(|v| scale * v);
+    model.film().mesh().map_or_else(Vec::new, |mesh| mesh.map(scaled))
+}
+
+fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], march: &March) {
+    let Some(Stage { model, .. }) = stages.last() else { return };
+    let value = |of: RunningInQuantity| of.value(march, model);
+    let (first, last) = march.losses();
+    found.energy_lost_kj = value(RunningInQuantity::EnergyLost) * 1e-3;
+    found.mean_loss_w = value(RunningInQuantity::MeanLoss);
+    (found.first_loss_w, found.final_loss_w) = (first, last);
+    found.wear_volume_mm3 = value(RunningInQuantity::WearVolume) * 1e9;
+    let deepest = |field: &[f64]| field.iter().copied().fold(0.0, f64::max);
+    found.max_wear_depth_um = deepest(&march.worn_m.shell) * 1e6;
+    found.time_to_run_in_h = (first > last).then(|| value(RunningInQuantity::TimeToRunIn) / HOUR_S);
+    found.wear_depth_um = whole_width(model, &march.worn_m.shell, 1e6);
+    found.journal_wear_depth_um = whole_width(model, &march.worn_m.journal, 1e6);
+    found.refused_blocks = march.refused;
+    found.simulations = march.cost.simulations;
+    let mesh = model.film().mesh();
+    let copies = mesh.map_or(1.0, |m| if m.axial == Axial::Half { 2.0 } else { 1.0 });
+    let setup = model.setup();
+    let cells = mesh.map_or(1, crate::film::Mesh::cells) as f64;
+    let area_m2 = std::f64::consts::PI * setup.diameter_m * setup.width_m / (cells * copies);
+    let row = |stage: usize, time_s: f64, worn: &SurfaceField, rate: &Rate| {
+        let state = state(rate);
+        let sum: f64 = worn.shell.iter().chain(&worn.journal).sum();
+        RunningInBlock {
+            stage: wanted.stages[stage].point.name.clone(),
+            time_h: time_s / HOUR_S,
+            loss_w: state.loss_w,
+            contact_loss_w: state.contact_loss_w,
+            contact_share: rate.contact_share(),
+            min_film_thickness_um: state.min_film_thickness_um,
+            max_contact_pressure_mpa: state.max_contact_pressure_mpa,
+            max_wear_depth_um: deepest(&worn.shell) * 1e6,
+            wear_volume_mm3: sum * area_m2 * copies * 1e9,
+        }
+    };
+    for (k, end) in march.ends.iter().enumerate() {
+        let mine = march.blocks.iter().filter(|b| b.stage == k);
+        found.blocks.extend(mine.map(|b| row(k, b.from_s, &b.worn_m, &b.rates[0])));
+        found.blocks.push(row(k, end.0, &end.1, &end.2));
+    }
+    let begins = march.blocks.iter().find(|b| b.stage + 1 == stages.len());
+    found.first_contact_share = begins.map_or(march.last.contact_share(), |b| b.rates[0].contact_share());
+    found.final_contact_share = march.last.contact_share();
+    found.count = march.blocks.len();
+    found.width_mm = setup.width_m * 1e3;
+}
+
+fn state(rate: &Rate) -> CycleState {
+    let all = |o: BearingOutput| rate.orbit.outputs.iter().map(move |y| y[o.index()]);
+    CycleState {
+        loss_w: rate.loss_w(),
+        contact_loss_w: rate.mean(BearingOutput::ContactLoss),
+        min_film_thickness_um: all(BearingOutput::GapMin).fold(f64::INFINITY, f64::min) * 1e6,
+        max_contact_pressure_mpa: all(BearingOutput::ContactPeak).fold(0.0, f64::max) * 1e-6,
+    }
+}
+
+/// The operating points of the objective with new and with run-in surfaces.
+fn before_after(
+    study: &Study,
+    plan: &Plan,
+    (bearing, x): (usize, &[f64]),
+    march: &March,
+    context: RunContext<'_>,
+) -> Vec<BeforeAfter> {
+    let whole = plan.problem.whole(x);
+    let one = |point: &OperatingPoint| -> Option<BeforeAfter> {
+        let (model, variables) = bearing_at(study, bearing, point, None).ok()?;
+        let p: Vec<f64> = variables.iter().map(|&j| whole[j]).collect();
+        let model = model.with_parameters(&p).ok()?;
+        let settled = |worn: &SurfaceField, near| {
+            settled_with_wear(&model, worn, &study.orbit, near, context.cancel).ok()
+        };
+        // Zeros instead of nothing, so that both are judged by the same cells.
+        let blank = SurfaceField { shell: model.blank_field().shell, journal: Vec::new() };
+        let new = settled(&blank, None)?;
+        let run_in = settled(&march.worn_m, Some(&new.orbit));
+        Some(BeforeAfter {
+            operating_point: point.name.clone(),
+            new: state(&new),
+            run_in: run_in.as_ref().map(state),
+        })
+    };
+    study.points.iter().filter_map(one).collect()
+}
