@@ -4,6 +4,7 @@
 //! model of the constraints' curvature, COBYLA needs no gradients at all, which is for objectives with noise.
 
 use super::linear::Softened;
+use super::memory::{Key, key};
 use super::minimum::Minimum;
 use super::problem::Scaled;
 use super::sqp::{SqpOptions, minimise};
@@ -109,7 +110,7 @@ struct Watched<'p, P: ?Sized> {
     budget: Budget,
     began: Instant,
     /// Designs that were asked for; asking again costs nothing.
-    asked: Mutex<HashSet<Vec<u64>>>,
+    asked: Mutex<HashSet<Key>>,
     spent: AtomicBool,
 }
 
@@ -119,7 +120,7 @@ impl<P: ConstrainedProblem + ?Sized> ConstrainedProblem for Watched<'_, P> {
     }
 
     fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
-        let design: Vec<u64> = x.iter().map(|v| v.to_bits()).collect();
+        let design = key(x);
         let mut asked = self.asked.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let late = self.budget.seconds.is_some_and(|s| self.began.elapsed().as_secs_f64() > s);
         let spent = self.budget.simulations.is_some_and(|most| asked.len() as u64 >= most);

@@ -5,10 +5,10 @@
 //! ```
 //!
 //! `H` is the Hessian of the Lagrangian along those directions, one product each ([`Curved`]); active are the bounds, linear and
-//! other constraints that the search ended at. Multipliers are those of least squares. A step is kept if the KKT residual, which counts
-//! what is missed of constraints too, falls. In the end the point is kept if its residual is below that of the search: at a kink, where the search judges by a
-//! combination of gradients, it is not. Near a solution that is strict and keeps
-//! its active rows, the residual falls quadratically. Deliberately not here: finding the active rows, which is the search's task.
+//! other constraints that the search ended at. Multipliers are those of least squares. A step is kept if the KKT residual, which
+//! counts what is missed of constraints too, falls. In the end the point is kept if its residual is below that of the search: at a
+//! kink, where the search judges by a combination of gradients, it is not. Near a solution that is strict and keeps its active rows,
+//! the residual falls quadratically. Deliberately not here: finding the active rows, which is the search's task.
 
 use super::minimum::Minimum;
 use super::problem::Scaled;
@@ -64,22 +64,19 @@ pub fn polish<P: ConstrainedProblem + Curved + ?Sized>(
     tolerance: f64,
 ) -> Result<Polished, EvaluationError> {
     let mut done = Polished { kkt: (end.kkt, end.kkt), ..Polished::default() };
-    if end.values.is_none() {
-        return Ok(done);
-    }
+    let Some(mut values) = end.values.clone() else { return Ok(done) };
     let before = end.clone();
     let mut scaled = Scaled::new(problem, &end.x);
-    let start = scaled.to_scaled(&end.x);
-    scaled.scale_objective(&start)?;
+    // By what the search found: asking at the image in the unit box would simulate the design again.
+    scaled.scale_objective(values.objective);
+    values.objective /= scaled.objective_scale;
     let mut x = end.x.clone();
-    let mut values = scaled.values(&start)?;
     let mut slopes = scaled.of(problem.slopes(&x)?);
     let mut prices = end.multipliers.clone();
     loop {
         let s = scaled.to_scaled(&x);
         let held = held(&scaled, &s, &values, &slopes, &prices);
         let fitted = fit(&held, &slopes);
-        let lagrangian = |slopes: &Slopes| gradient(slopes, &held, &fitted);
         let residual = residual(&held, &fitted, &slopes, &values);
         // A kept step brought the point here: what is known of it belongs to it.
         if residual < end.kkt || done.steps > 0 {
@@ -98,7 +95,7 @@ pub fn polish<P: ConstrainedProblem + Curved + ?Sized>(
             done.products += 1;
             columns.push(product(&scaled, &x, direction, &held, &fitted)?);
         }
-        let Some(step) = newton(&held, &free, &columns, &lagrangian(&slopes)) else { break };
+        let Some(step) = newton(&held, &free, &columns, &gradient(&slopes, &held, &fitted)) else { break };
         let to: Vec<f64> =
             (0..s.len()).map(|j| (s[j] + step[j]).clamp(scaled.lower[j], scaled.upper[j])).collect();
         let next = scaled.to_true(&to);

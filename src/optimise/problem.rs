@@ -121,10 +121,15 @@ impl<'p, P: ConstrainedProblem + ?Sized> Scaled<'p, P> {
     }
 
     /// Divides the objective by its size at a point; one that happens to vanish there has no size to scale by.
-    pub fn scale_objective(&mut self, s: &[f64]) -> Result<(), EvaluationError> {
-        let size = self.values(s)?.objective.abs();
-        self.objective_scale = if size < 1e-8 { 1.0 } else { size };
+    pub fn scale_objective_at(&mut self, s: &[f64]) -> Result<(), EvaluationError> {
+        self.scale_objective(self.values(s)?.objective);
         Ok(())
+    }
+
+    /// The same with a known value.
+    pub fn scale_objective(&mut self, value: f64) {
+        let size = value.abs();
+        self.objective_scale = if size < 1e-8 { 1.0 } else { size };
     }
 
     pub fn to_scaled(&self, x: &[f64]) -> Vec<f64> {

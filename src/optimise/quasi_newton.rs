@@ -68,17 +68,16 @@ impl QuasiNewton {
         } else {
             self.pairs.truncate(PAIRS - 1);
             self.pairs.push_front((s, y));
-            self.rebuild(n);
+            self.rebuild();
         }
         self.fresh = false;
     }
 
-    fn rebuild(&mut self, n: usize) {
+    fn rebuild(&mut self) {
         let told = self.pairs.iter().find(|(s, y)| s.dot(y) > 0.0);
         let curvature = told.map_or(1.0, |(s, y)| size(s, y));
         self.matrix.fill_with_identity();
         self.matrix *= curvature;
-        debug_assert_eq!(self.matrix.nrows(), n);
         for (s, y) in self.pairs.iter().rev() {
             add(&mut self.matrix, s, y);
         }

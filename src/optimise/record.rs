@@ -105,7 +105,7 @@ impl<'p, P: ConstrainedProblem + ?Sized> Record<'p, P> {
 
     /// Searches from the start, after scaling the objective by its size there; a failure there ends the search.
     pub fn search(mut self, method: impl FnOnce(&mut Self) -> Result<Outcome, EvaluationError>) -> Minimum {
-        let scaled = self.scaled.scale_objective(&self.start);
+        let scaled = self.scaled.scale_objective_at(&self.start);
         let outcome = scaled.and_then(|()| method(&mut self)).unwrap_or_else(|e| match e {
             EvaluationError::Cancelled => Outcome::Cancelled,
             EvaluationError::Failed(reason) => {

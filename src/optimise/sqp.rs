@@ -73,7 +73,7 @@ pub fn minimise<P: ConstrainedProblem + ?Sized>(
         Err(end) => return Ok(*end),
     };
     // A start that cannot be evaluated is told by the search itself.
-    let _ = scaled.scale_objective(&s);
+    let _ = scaled.scale_objective_at(&s);
     let result = Executor::new(Operator { scaled }, Sqp::new(options))
         .configure(|state: SqpState| state.start(s.clone()).max_iters(options.max_iterations))
         .ctrlc(false)

@@ -6,6 +6,7 @@
 
 use super::rate::{Rate, settled_with_wear};
 use crate::cranktrain::{JournalBearing, SurfaceField};
+use crate::gradient::GradientError;
 use crate::orbit::{OrbitError, OrbitOptions};
 use crate::run::{Cancel, Cost};
 use thiserror::Error;
@@ -15,7 +16,7 @@ const SHORTEST: f64 = 1e-9;
 /// Length of the next block against the last: safety, least, most.
 const SAFETY: f64 = 0.9;
 const CHANGE: (f64, f64) = (0.2, 4.0);
-/// The first block wears its surfaces by about this share of what one block may err by.
+/// The first block wears its surfaces by about this many times what one block may err by.
 const FIRST: f64 = 2.0;
 
 /// One operating point of a programme.
@@ -64,13 +65,13 @@ impl MarchOptions {
 pub enum MarchError {
     /// A cycle did not settle.
     #[error(transparent)]
-    Orbit(#[from] OrbitError),
+    Orbit(OrbitError),
     /// A bearing does not exist.
     #[error("{0}")]
     Parameters(String),
     /// A gradient failed.
     #[error(transparent)]
-    Gradient(#[from] crate::gradient::GradientError),
+    Gradient(GradientError),
     /// The states of a cycle are not kept.
     #[error("orbit.memory has no room for the states of a cycle, which wear is made of; raise it")]
     Memory,
@@ -82,6 +83,25 @@ pub enum MarchError {
     /// Stopped from outside.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<OrbitError> for MarchError {
+    fn from(e: OrbitError) -> Self {
+        match e {
+            OrbitError::Cancelled(_) => Self::Cancelled,
+            other => Self::Orbit(other),
+        }
+    }
+}
+
+impl From<GradientError> for MarchError {
+    fn from(e: GradientError) -> Self {
+        match e {
+            GradientError::Cancelled(_) => Self::Cancelled,
+            GradientError::Orbit(e) => e.into(),
+            other => Self::Gradient(other),
+        }
+    }
 }
 
 /// One block of many cycles.

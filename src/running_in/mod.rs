@@ -20,5 +20,5 @@ mod rate;
 
 pub use adjoint::{RunningInGradient, march_adjoint};
 pub use march::{Block, March, MarchError, MarchOptions, Stage, march, replay};
-pub use quantity::{RunningInQuantity, Worth};
+pub use quantity::{RunningInQuantity, Worth, worn_volume_m3};
 pub use rate::{Rate, settled_with_wear};

@@ -45,6 +45,16 @@ pub struct Worth {
     pub area: f64,
 }
 
+/// Volume worn off both surfaces of a bearing, m3.
+pub fn worn_volume_m3(worn_m: &SurfaceField, model: &JournalBearing) -> f64 {
+    depth_sum_m(worn_m) * cell_area_m2(model)
+}
+
+/// Sum of the depths of all cells of both surfaces, m.
+fn depth_sum_m(worn_m: &SurfaceField) -> f64 {
+    worn_m.shell.iter().chain(&worn_m.journal).sum()
+}
+
 /// Area that a cell stands for, all copies of it together, m2.
 pub(super) fn cell_area_m2(model: &JournalBearing) -> f64 {
     let (s, mesh) = (model.setup(), model.film().mesh());
@@ -59,7 +69,7 @@ impl RunningInQuantity {
             Self::EnergyLost => march.energy_j,
             Self::MeanLoss => march.energy_j / march.duration_s,
             Self::FinalLoss => last,
-            Self::WearVolume => march.depth_sum_m() * cell_area_m2(model),
+            Self::WearVolume => worn_volume_m3(&march.worn_m, model),
             Self::MaxDepth(sharpness) => {
                 PowerMean::maximum(sharpness).of(march.worn_m.shell.iter().copied()).value()
             }
@@ -90,7 +100,7 @@ impl RunningInQuantity {
             Self::WearVolume => {
                 worth.worn.shell.fill(cell_area_m2(model));
                 worth.worn.journal.fill(cell_area_m2(model));
-                worth.area = march.depth_sum_m();
+                worth.area = depth_sum_m(&march.worn_m);
             }
             Self::MaxDepth(sharpness) => {
                 let mean = PowerMean::maximum(sharpness).of(march.worn_m.shell.iter().copied());
@@ -128,10 +138,5 @@ impl March {
     fn last_blocks(&self) -> impl Iterator<Item = &Block> {
         let last = self.blocks.last().map_or(0, |b| b.stage);
         self.blocks.iter().filter(move |b| b.stage == last)
-    }
-
-    /// Sum of the depths of all cells of both surfaces, m.
-    pub(super) fn depth_sum_m(&self) -> f64 {
-        self.worn_m.shell.iter().chain(&self.worn_m.journal).sum()
     }
 }

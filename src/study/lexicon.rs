@@ -2,7 +2,7 @@
 
 use super::bearings::Bearings;
 use super::faults::Faults;
-use super::file::FilmModelName;
+use super::file::{FilmModelName, StudyFile};
 use super::plans::{BearingPlan, FilmPlan};
 use super::variables::Variable;
 use crate::cranktrain::BearingParameter;
@@ -28,7 +28,15 @@ pub(super) struct Lexicon<'a> {
     pub constant: bool,
 }
 
-impl Lexicon<'_> {
+impl<'a> Lexicon<'a> {
+    /// That of a study.
+    pub fn of(file: &StudyFile, bearings: &'a Bearings, film: Option<&'a FilmPlan>) -> Self {
+        let oil = file.oil.value();
+        let inlet_k = oil.and_then(|o| o.inlet_temperature.value()).map(|t| t.si());
+        let constant = oil.is_some_and(|o| !o.dynamic_viscosity.is_absent());
+        Self { bearings, film, inlet_k, constant }
+    }
+
     /// What a name stands for; several for all coefficients of a spline.
     pub fn targets(&self, name: &str, path: &str, faults: &mut Faults) -> Option<Vec<Target>> {
         let (owner, key) = name.split_once('.').unwrap_or((name, ""));

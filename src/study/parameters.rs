@@ -15,9 +15,7 @@ pub(super) fn parameters(
     faults: &mut Faults,
 ) -> Option<Vec<ParameterPlan>> {
     faults.need(&file.parameters, "parameters");
-    let oil = file.oil.value().cloned().unwrap_or_default();
-    let inlet_k = oil.inlet_temperature.value().map(|t| t.si());
-    let lexicon = Lexicon { bearings, film, inlet_k, constant: !oil.dynamic_viscosity.is_absent() };
+    let lexicon = Lexicon::of(file, bearings, film);
     let Given::Value(list) = &mut file.parameters else { return None };
     if list.is_empty() {
         faults.add("parameters", "needs at least one [[parameters]]");

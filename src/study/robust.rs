@@ -5,11 +5,12 @@ use super::bearings::Bearings;
 use super::build::Plan;
 use super::check::Study;
 use super::faults::{Faults, join};
-use super::file::{AggregateName, FilmModelName, RobustFile, StudyFile, ToleranceFile};
+use super::file::{RobustFile, StudyFile, ToleranceFile};
 use super::lexicon::Lexicon;
 use super::plans::{FilmPlan, ParameterPlan};
-use crate::cranktrain::BearingParameter;
-use crate::optimise::{ConstrainedProblem, Evaluated, Margins, Robust, latin_hypercube};
+use super::sections::worst_case;
+use crate::cranktrain::JournalBearing;
+use crate::optimise::{ConstrainedProblem, DesignProblem, Evaluated, Margins, Robust, latin_hypercube};
 use crate::report::{RobustReport, SampledLimit, ToleranceReport};
 use crate::run::{Event, RunContext};
 use crate::units::TemperatureRise;
@@ -49,10 +50,7 @@ impl RobustPlan {
     }
 
     /// The problem of a plan with margins.
-    pub fn problem<'p, 'r>(
-        &self,
-        plan: &'p Plan<'r>,
-    ) -> Robust<'p, crate::optimise::DesignProblem<'r, crate::cranktrain::JournalBearing>> {
+    pub fn problem<'p, 'r>(&self, plan: &'p Plan<'r>) -> Robust<'p, DesignProblem<'r, JournalBearing>> {
         let n = plan.start.len();
         Robust::new(&plan.problem, self.values(), self.deviations(n), self.sigmas)
     }
@@ -66,14 +64,12 @@ pub(super) fn robust(
     parameters: &[ParameterPlan],
     faults: &mut Faults,
 ) -> Option<RobustPlan> {
-    let oil = file.oil.value().cloned().unwrap_or_default();
-    let inlet_k = oil.inlet_temperature.value().map(|t| t.si());
-    let lexicon = Lexicon { bearings, film, inlet_k, constant: !oil.dynamic_viscosity.is_absent() };
-    let worst = file.objective.value().and_then(|o| o.aggregate.value().copied());
+    let lexicon = Lexicon::of(file, bearings, film);
+    let worst = worst_case(file);
     faults.get(&file.robust, PATH);
     let Given::Value(r) = &mut file.robust else { return None };
     faults.unknown::<RobustFile>(&r.unknown, PATH);
-    if worst == Some(AggregateName::WorstCase) {
+    if worst {
         faults
             .add(PATH, "does not go together with objective.aggregate = \"worst-case\"; remove one of them");
     }
@@ -136,11 +132,6 @@ fn tolerance(
             faults.add(&name_at, format!("\"{name}\" stands twice"));
         }
         plan.scatter.push((index, deviation));
-    }
-    if lexicon.film.is_some_and(|f| f.model == FilmModelName::Mobility)
-        && matches!(variable.parameter, BearingParameter::Tilt(_))
-    {
-        faults.add(&name_at, "the short bearing knows no tilt");
     }
     Some(())
 }

@@ -41,12 +41,9 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
     stage("checking the design");
     let known = minimum.values.as_ref().and_then(|_| revisit(study, plan, minimum, context));
     let optimum = known.as_ref().map(|known| known.optimum.clone());
-    let known_design = known.is_some();
     let mut findings = report(study, &searched, known, context);
     if let (Some(optimum), false) = (optimum, context.cancel.is_cancelled()) {
         findings.report.robust = robust::report(study, plan, &minimum.x, optimum, context);
-    }
-    if known_design && !context.cancel.is_cancelled() {
         findings.report.running_in = run_in::report(study, &searched, context);
     }
     findings.report.choices = choices;

@@ -1,21 +1,21 @@
 //! The design that was found, run in: the march of each bearing through the programme, and the report of it.
 
-use super::build::{Plan, bearing_at};
+use super::build::Plan;
 use super::check::Study;
 use super::limits::{ACTIVE, ACTIVE_GAP, MET};
 use super::plans::OperatingPoint;
-use super::running_in::{RunningInPlan, StagePlan, march_options, stages};
+use super::running_in::{RunningInPlan, StagePlan, bearing_of, march_options, stages};
 use super::searches::Searched;
 use crate::cranktrain::{BearingOutput, JournalBearing, SurfaceField};
-use crate::dae::Dae;
-use crate::film::Axial;
 use crate::optimise::Minimum;
 use crate::report::{
     BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, RunningInBlock, RunningInReport, StageReport,
     WearLimitReport,
 };
 use crate::run::{Event, RunContext};
-use crate::running_in::{Block, March, MarchError, Rate, RunningInQuantity, Stage, march, settled_with_wear};
+use crate::running_in::{
+    Block, March, MarchError, Rate, RunningInQuantity, Stage, march, settled_with_wear, worn_volume_m3,
+};
 use crate::units::tidy;
 
 /// Seconds of an hour.
@@ -139,14 +139,8 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
     found.journal_wear_depth_um = whole_width(model, &march.worn_m.journal, 1e6);
     found.refused_blocks = march.refused;
     found.simulations = march.cost.simulations;
-    let mesh = model.film().mesh();
-    let copies = mesh.map_or(1.0, |m| if m.axial == Axial::Half { 2.0 } else { 1.0 });
-    let setup = model.setup();
-    let cells = mesh.map_or(1, crate::film::Mesh::cells) as f64;
-    let area_m2 = std::f64::consts::PI * setup.diameter_m * setup.width_m / (cells * copies);
     let row = |stage: usize, time_s: f64, worn: &SurfaceField, rate: &Rate| {
         let state = state(rate);
-        let sum: f64 = worn.shell.iter().chain(&worn.journal).sum();
         RunningInBlock {
             stage: wanted.stages[stage].point.name.clone(),
             time_h: time_s / HOUR_S,
@@ -156,7 +150,7 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
             min_film_thickness_um: state.min_film_thickness_um,
             max_contact_pressure_mpa: state.max_contact_pressure_mpa,
             max_wear_depth_um: deepest(&worn.shell) * 1e6,
-            wear_volume_mm3: sum * area_m2 * copies * 1e9,
+            wear_volume_mm3: worn_volume_m3(worn, model) * 1e9,
         }
     };
     for (k, end) in march.ends.iter().enumerate() {
@@ -168,7 +162,7 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
     found.first_contact_share = begins.map_or(march.last.contact_share(), |b| b.rates[0].contact_share());
     found.final_contact_share = march.last.contact_share();
     found.count = march.blocks.len();
-    found.width_mm = setup.width_m * 1e3;
+    found.width_mm = model.setup().width_m * 1e3;
 }
 
 fn state(rate: &Rate) -> CycleState {
@@ -189,11 +183,8 @@ fn before_after(
     march: &March,
     context: RunContext<'_>,
 ) -> Vec<BeforeAfter> {
-    let whole = plan.problem.whole(x);
     let one = |point: &OperatingPoint| -> Option<BeforeAfter> {
-        let (model, variables) = bearing_at(study, bearing, point, None).ok()?;
-        let p: Vec<f64> = variables.iter().map(|&j| whole[j]).collect();
-        let model = model.with_parameters(&p).ok()?;
+        let (model, _) = bearing_of(study, plan, (bearing, x), point, None).ok()?;
         let settled = |worn: &SurfaceField, near| {
             settled_with_wear(&model, worn, &study.orbit, near, context.cancel).ok()
         };

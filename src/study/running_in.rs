@@ -5,8 +5,10 @@ use super::bearings::Bearings;
 use super::build::{Plan, bearing_at};
 use super::check::Study;
 use super::faults::{Faults, join};
-use super::file::{AggregateName, FilmModelName, RunningInFile, RunningInGoalName, StageFile, StudyFile};
+use super::file::{FilmModelName, RunningInFile, RunningInGoalName, StageFile, StudyFile};
 use super::plans::{FilmPlan, OperatingPoint};
+use super::sections::worst_case;
+use crate::cranktrain::JournalBearing;
 use crate::dae::{Dae, InvalidParameters};
 use crate::gradient::EngineName;
 use crate::running_in::{MarchOptions, RunningInQuantity, Stage};
@@ -46,11 +48,10 @@ pub(super) fn running_in(
     faults: &mut Faults,
 ) -> Option<RunningInPlan> {
     faults.get(&file.running_in, PATH);
-    let worst = file.objective.value().and_then(|o| o.aggregate.value()) == Some(&AggregateName::WorstCase);
     let polish = file.optimiser.value().and_then(|o| o.polish.value()) == Some(&true);
     let engine = file.gradient.value().and_then(|g| g.engine.value());
     let others = [
-        (worst, "objective.aggregate = \"worst-case\""),
+        (worst_case(file), "objective.aggregate = \"worst-case\""),
         (!file.robust.is_absent(), "[robust]"),
         (!file.pareto.is_absent(), "[pareto]"),
         (polish, "optimiser.polish"),
@@ -141,13 +142,25 @@ pub(super) fn stages(
     bearing: usize,
     x: &[f64],
 ) -> Result<(Vec<Stage>, Vec<Vec<usize>>), InvalidParameters> {
-    let whole = plan.problem.whole(x);
     let of = |s: &StagePlan| {
-        let (model, variables) = bearing_at(study, bearing, &s.point, s.inlet_k)?;
-        let p: Vec<f64> = variables.iter().map(|&j| whole[j]).collect();
-        Ok((Stage { model: model.with_parameters(&p)?, duration_s: s.duration_s }, variables))
+        let (model, variables) = bearing_of(study, plan, (bearing, x), &s.point, s.inlet_k)?;
+        Ok((Stage { model, duration_s: s.duration_s }, variables))
     };
     wanted.stages.iter().map(of).collect()
+}
+
+/// A bearing of a design at an operating point, and which variables its parameters are.
+pub(super) fn bearing_of(
+    study: &Study,
+    plan: &Plan,
+    (bearing, x): (usize, &[f64]),
+    point: &OperatingPoint,
+    inlet_k: Option<f64>,
+) -> Result<(JournalBearing, Vec<usize>), InvalidParameters> {
+    let (model, variables) = bearing_at(study, bearing, point, inlet_k)?;
+    let whole = plan.problem.whole(x);
+    let p: Vec<f64> = variables.iter().map(|&j| whole[j]).collect();
+    Ok((model.with_parameters(&p)?, variables))
 }
 
 /// How a bearing is marched through its programme.

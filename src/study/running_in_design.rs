@@ -18,8 +18,7 @@ use crate::running_in::{
     replay,
 };
 use rayon::prelude::*;
-use std::collections::BTreeMap;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 /// Sharpness of the smooth maximum of the wear depth.
 const SHARPNESS: f64 = 100.0;
@@ -40,6 +39,12 @@ struct Marched {
     found: March,
 }
 
+/// A design with its marches.
+struct Latest {
+    x: Vec<f64>,
+    marched: Arc<Vec<Marched>>,
+}
+
 /// The problem; see the module page.
 pub(super) struct RunningInProblem<'p, 'r> {
     study: &'p Study,
@@ -47,12 +52,9 @@ pub(super) struct RunningInProblem<'p, 'r> {
     plan: &'p Plan<'r>,
     context: RunContext<'p>,
     own: Vec<Own>,
-    values: Mutex<BTreeMap<Vec<u64>, Values>>,
+    /// The design marched last: its gradients are asked for next, if it is accepted.
+    latest: Mutex<Option<Latest>>,
     cost: Mutex<Cost>,
-}
-
-fn key(x: &[f64]) -> Vec<u64> {
-    x.iter().map(|v| v.to_bits()).collect()
 }
 
 fn refused(e: MarchError) -> EvaluationError {
@@ -81,8 +83,8 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
             Ok(Own { bearing, count, options, shares })
         };
         let own: Result<Vec<Own>, EvaluationError> = (0..study.bearings.len()).map(own).collect();
-        let (values, cost) = (Mutex::default(), Mutex::default());
-        Ok(Self { study, wanted, plan, context, own: own?, values, cost })
+        let (latest, cost) = (Mutex::default(), Mutex::default());
+        Ok(Self { study, wanted, plan, context, own: own?, latest, cost })
     }
 
     /// Work of all marches and of their gradients.
@@ -94,12 +96,24 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
         *self.cost.lock().unwrap_or_else(std::sync::PoisonError::into_inner) += cost;
     }
 
-    fn marched(&self, own: &Own, x: &[f64]) -> Result<Marched, EvaluationError> {
-        let (stages, variables) = stages(self.study, self.wanted, self.plan, own.bearing, x)
-            .map_err(|e| EvaluationError::Failed(e.to_string()))?;
-        let found = replay(&stages, &own.shares, &own.options, None, self.context.cancel).map_err(refused)?;
-        self.spend(found.cost);
-        Ok(Marched { stages, variables, found })
+    /// All bearings marched at a design.
+    fn marched(&self, x: &[f64]) -> Result<Arc<Vec<Marched>>, EvaluationError> {
+        let latest = || self.latest.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(known) = latest().as_ref().filter(|known| known.x == x) {
+            return Ok(known.marched.clone());
+        }
+        let one = |own: &Own| {
+            let (stages, variables) = stages(self.study, self.wanted, self.plan, own.bearing, x)
+                .map_err(|e| EvaluationError::Failed(e.to_string()))?;
+            let found =
+                replay(&stages, &own.shares, &own.options, None, self.context.cancel).map_err(refused)?;
+            self.spend(found.cost);
+            Ok(Marched { stages, variables, found })
+        };
+        let all: Result<Vec<Marched>, EvaluationError> = self.own.par_iter().map(one).collect();
+        let marched = Arc::new(all?);
+        *latest() = Some(Latest { x: x.to_vec(), marched: marched.clone() });
+        Ok(marched)
     }
 
     /// Limited quantities with their limits.
@@ -120,36 +134,26 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
     }
 
     fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
-        let known =
-            self.values.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get(&key(x)).cloned();
-        if let Some(known) = known {
-            return Ok(known);
-        }
         let mut values = self.plan.problem.values(x)?;
-        let all: Result<Vec<_>, EvaluationError> =
-            self.own.par_iter().map(|own| Ok((own, self.marched(own, x)?))).collect();
         values.objective = 0.0;
-        for (own, Marched { stages, found, .. }) in all? {
+        for (own, Marched { stages, found, .. }) in self.own.iter().zip(&*self.marched(x)?) {
             let Some(Stage { model, .. }) = stages.last() else { continue };
-            values.objective += own.count * self.minimised().value(&found, model);
-            let beyond = self.limits().into_iter().map(|(of, limit)| of.value(&found, model) / limit - 1.0);
+            values.objective += own.count * self.minimised().value(found, model);
+            let beyond = self.limits().into_iter().map(|(of, limit)| of.value(found, model) / limit - 1.0);
             values.inequalities.extend(beyond);
         }
-        let mut memory = self.values.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        memory.insert(key(x), values.clone());
         Ok(values)
     }
 
     fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
         let mut slopes = self.plan.problem.slopes(x)?;
         slopes.objective.fill(0.0);
-        for own in &self.own {
-            let Marched { stages, variables, found } = self.marched(own, x)?;
+        for (own, Marched { stages, variables, found }) in self.own.iter().zip(&*self.marched(x)?) {
             let row = |of: RunningInQuantity, by: f64, into: &mut [f64]| -> Result<(), EvaluationError> {
                 let table: RunningInGradient =
-                    march_adjoint(&stages, &found, &own.options, of, self.context.cancel).map_err(refused)?;
+                    march_adjoint(stages, found, &own.options, of, self.context.cancel).map_err(refused)?;
                 self.spend(table.cost);
-                for (row, variables) in table.by_stage.iter().zip(&variables) {
+                for (row, variables) in table.by_stage.iter().zip(variables) {
                     for (g, &j) in row.iter().zip(variables) {
                         if let Some(entry) = into.get_mut(j) {
                             *entry += by * g;

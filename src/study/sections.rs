@@ -121,6 +121,7 @@ pub(super) fn gradient(file: &mut StudyFile, faults: &mut Faults) -> Option<(Eng
 }
 
 pub(super) fn optimiser(file: &mut StudyFile, faults: &mut Faults) -> Option<(SearchPlan, f64)> {
+    let worst_or_robust = worst_case(file) || !file.robust.is_absent();
     let o = faults.section(&mut file.optimiser, "optimiser")?;
     faults.unknown::<OptimiserFile>(&o.unknown, "optimiser");
     let at = |key: &str| join("optimiser", key);
@@ -167,12 +168,16 @@ pub(super) fn optimiser(file: &mut StudyFile, faults: &mut Faults) -> Option<(Se
     let rivals = rivals.iter().map(|r| (r.method, r.engine.unwrap_or(EngineName::Adj))).collect();
     let options = SearchOptions { method, settings: options, budget: Budget { simulations, seconds } };
     let polish = faults.or(&mut o.polish, &at("polish"), false);
-    let worst = file.objective.value().and_then(|o| o.aggregate.value()) == Some(&AggregateName::WorstCase);
-    if polish && (worst || !file.robust.is_absent()) {
+    if polish && worst_or_robust {
         let words = "is for weighted means without margins; remove it, the worst case or [robust]";
         faults.add(&at("polish"), words);
     }
     Some((SearchPlan { options, starts, seed, rivals, polish }, sharpness))
+}
+
+/// Whether a study asks for the worst case.
+pub(super) fn worst_case(file: &StudyFile) -> bool {
+    file.objective.value().and_then(|o| o.aggregate.value()) == Some(&AggregateName::WorstCase)
 }
 
 /// Assumptions must belong to keys that exist.
