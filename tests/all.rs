@@ -21,6 +21,7 @@ mod own_problem;
 mod recording;
 mod resume;
 mod running_in;
+mod running_in_gradients;
 mod sensitivity;
 mod study_physics;
 

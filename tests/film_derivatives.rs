@@ -88,7 +88,9 @@ fn values(film: &dyn FilmModel, at: &Point, angle: f64) -> FilmTangent {
     let (mut residual, mut content) = (vec![0.0; at.q.len()], vec![0.0; at.q.len()]);
     film.residual(&at.site(angle), &at.q, &at.rate, &mut residual);
     film.content(&at.site(angle), &at.q, &mut content);
-    FilmTangent { residual, content, output: film.output(&at.site(angle), &at.q) }
+    let mut contact_pa = vec![0.0; at.q.len()];
+    film.contact_pa(&at.site(angle), &mut contact_pa);
+    FilmTangent { residual, content, output: film.output(&at.site(angle), &at.q), contact_pa }
 }
 
 fn largest(v: &[f64]) -> f64 {
@@ -127,6 +129,7 @@ fn check_differences(case: &Case, at: &Point, along: &Point, angle: f64, tangent
     let fields = [
         ("residual", &plus.residual, &minus.residual, &tangent.residual),
         ("content", &plus.content, &minus.content, &tangent.content),
+        ("contact", &plus.contact_pa, &minus.contact_pa, &tangent.contact_pa),
     ];
     for (what, plus, minus, tangent) in fields {
         let size = largest(tangent);

@@ -312,6 +312,12 @@ pub trait SensitiveDae: LinearisedDae {
     fn pull(&self, point: &Self::Point, at: At, v: &[f64], w: &[f64], u: &mut [f64]);
     /// Writes `dy = g_z dz + g_m' drate + g_u du`.
     fn output_tangent(&self, point: &Self::Point, at: At, direction: Direction, dy: &mut [f64]);
+    /// How many local outputs there are: one for each of many places, asked for as means over the cycle only. None by default.
+    fn locals(&self) -> usize {
+        0
+    }
+    /// Adds a share of the change of every local output along a direction to `sums`.
+    fn add_local_tangent(&self, _: &Self::Point, _: At, _: Direction, _share: f64, _sums: &mut [f64]) {}
     /// Adds `g_z^T w`, `g_m'^T w` and `g_u^T w` to the three parts of `out`.
     fn output_cotangent(&self, point: &Self::Point, at: At, w: &[f64], out: Cotangent);
 }

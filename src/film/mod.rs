@@ -129,6 +129,8 @@ pub struct FilmTangent {
     pub content: Vec<f64>,
     /// Change of the outputs.
     pub output: FilmOutput,
+    /// Change of the contact pressure of every cell, with the outputs, Pa; empty for a film without cells.
+    pub contact_pa: Vec<f64>,
 }
 
 /// Weights on what a film answers. Empty vectors stand for zero.

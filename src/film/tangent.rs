@@ -48,6 +48,7 @@ pub(super) fn tangent(
         residual: if wanted.residual { work.residual(place.rate) } else { Vec::new() },
         content: if wanted.content { work.content() } else { Vec::new() },
         output: if wanted.output { work.output() } else { FilmOutput::default() },
+        contact_pa: work.moved.contact,
     }
 }
 

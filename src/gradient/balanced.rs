@@ -10,7 +10,8 @@
 //! exact, for one more row per mean and one more column per unknown.
 
 use super::adjoint::adjoint;
-use super::transient::transient;
+use super::chain::Chain;
+use super::transient::{by_parameter, transient};
 use super::{EngineName, GradientEngine, GradientError, GradientTable};
 use crate::dae::{CycleEquations, SensitiveDae};
 use crate::orbit::{Orbit, OrbitOptions, Quantity, Reduction};
@@ -55,7 +56,10 @@ impl<M: SensitiveDae> GradientEngine<M> for Transient {
         of: &[Quantity],
         cancel: &Cancel,
     ) -> Result<GradientTable, GradientError> {
-        balanced(model, at, of, |model, of| transient(model, at, options, of, cancel))
+        balanced(model, at, of, |model, of| {
+            let chain = Chain::new(model, at, options, cancel);
+            Ok(transient(chain, of, &by_parameter(model), false)?.table)
+        })
     }
 }
 
@@ -74,15 +78,12 @@ fn balanced<M: SensitiveDae>(
     let mut table = inner(&model, &asked)?;
     let by_mean = table.rows.split_off(of.len());
     let values: Vec<f64> = means.iter().map(|q| at.value(q)).collect();
-    let answer = answer(equations, &values, &at.parameters, &by_mean)?;
     let first = at.parameters.len() - equations.unknowns();
+    let answer = answer(equations, &values, &at.parameters, &by_mean, |by_p, j| by_p[j])?;
     let means_by_field = table.fields.split_off(of.len().min(table.fields.len()));
     for (r, row) in table.rows.iter_mut().enumerate() {
         let by_unknown = row.split_off(first);
-        for (j, slope) in row.iter_mut().enumerate() {
-            *slope +=
-                by_unknown.iter().enumerate().map(|(u, g)| g * answer.by_parameter[(u, j)]).sum::<f64>();
-        }
+        answer.add(&by_unknown, row);
         // Fields stand in the equations through the means only.
         for (y, by_field) in means_by_field.iter().enumerate() {
             let weight: f64 = by_unknown.iter().enumerate().map(|(u, g)| g * answer.by_mean[(u, y)]).sum();
@@ -93,27 +94,39 @@ fn balanced<M: SensitiveDae>(
 }
 
 /// How the unknowns answer.
-struct Answer {
-    /// To the parameters: `du/dp`, means included.
-    by_parameter: DMatrix<f64>,
+pub(super) struct Answer {
+    /// To the parameters, or along directions: `du/dp`, means included.
+    pub by_direction: DMatrix<f64>,
     /// To a change of the means at fixed unknowns.
     by_mean: DMatrix<f64>,
 }
 
-fn answer(
+impl Answer {
+    /// Adds to a row what the unknowns do to it.
+    pub fn add(&self, by_unknown: &[f64], row: &mut [f64]) {
+        for (j, slope) in row.iter_mut().enumerate() {
+            *slope += by_unknown.iter().enumerate().map(|(u, g)| g * self.by_direction[(u, j)]).sum::<f64>();
+        }
+    }
+}
+
+/// Answers from the derivatives of the means, unknowns last; `direct` is what direction `j` does to an equation by itself, given
+/// its derivatives by the parameters.
+pub(super) fn answer(
     equations: &dyn CycleEquations,
     means: &[f64],
     p: &[f64],
     by_mean: &[Vec<f64>],
+    direct: impl Fn(&[f64], usize) -> f64,
 ) -> Result<Answer, GradientError> {
-    let (k, first) = (equations.unknowns(), p.len() - equations.unknowns());
+    let (k, known) = (equations.unknowns(), p.len() - equations.unknowns());
     let (r_y, r_p) = equations.slopes(means, p);
-    let total =
-        |i: usize, j: usize| r_p[i][j] + r_y[i].iter().zip(by_mean).map(|(r, row)| r * row[j]).sum::<f64>();
-    let by_unknown = DMatrix::from_fn(k, k, |i, j| total(i, first + j));
-    let by_parameter = DMatrix::from_fn(k, first, |i, j| -total(i, j));
+    let columns = by_mean.first().map_or(known, |row| row.len() - k);
+    let through = |i: usize, j: usize| r_y[i].iter().zip(by_mean).map(|(r, row)| r * row[j]).sum::<f64>();
+    let by_unknown = DMatrix::from_fn(k, k, |i, u| r_p[i][known + u] + through(i, columns + u));
+    let by_direction = DMatrix::from_fn(k, columns, |i, j| -(direct(&r_p[i], j) + through(i, j)));
     let means_alone = DMatrix::from_fn(k, means.len(), |i, y| -r_y[i][y]);
     let lu = by_unknown.lu();
     let solve = |rhs: &DMatrix<f64>| lu.solve(rhs).ok_or(GradientError::Unbalanced);
-    Ok(Answer { by_parameter: solve(&by_parameter)?, by_mean: solve(&means_alone)? })
+    Ok(Answer { by_direction: solve(&by_direction)?, by_mean: solve(&means_alone)? })
 }

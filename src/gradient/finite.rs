@@ -12,7 +12,7 @@ const REST: f64 = 1e-7;
 const FINEST: f64 = 1e-13;
 
 /// Options with which what is left of the start is small against a perturbation, not only against the cycle.
-pub(super) fn tight(options: &OrbitOptions, perturbation: f64) -> OrbitOptions {
+pub(crate) fn tight(options: &OrbitOptions, perturbation: f64) -> OrbitOptions {
     let tolerance = (REST * perturbation).max(FINEST).min(options.periodicity_tolerance);
     OrbitOptions { periodicity_tolerance: tolerance, ..*options }
 }

@@ -36,6 +36,7 @@
 //! Deliberately not here: which parameters and quantities a study asks for.
 
 mod adjoint;
+mod along;
 mod balanced;
 mod chain;
 mod finding;
@@ -47,8 +48,10 @@ mod sweep;
 mod taylor;
 mod transient;
 
+pub use along::{Along, AlongTable, along};
 pub use balanced::{Adjoint, Transient};
 pub use finding::{CEN_AGREES, ENGINES_AGREE, Finding, Verdict};
+pub(crate) use finite::tight;
 pub use finite::{Difference, FiniteDifference};
 pub use ladder::{LadderRow, check_ladder};
 pub use proof::{CheckPlan, GradientCheck, QuantityCheck, check_gradient, check_tables};

@@ -1,4 +1,4 @@
-//! Derivatives of a running-in, backwards through its blocks.
+//! ADJ through a running-in: what surfaces and energy are worth, carried backwards from block to block.
 //!
 //! With `l` the worth of the surfaces after a block and `e` that of its energy,
 //!
@@ -11,109 +11,102 @@
 //! Each cycle is differentiated once by its adjoint, for two rows: the loss, and the rubbing of all cells with their weights as marks.
 //! Derivatives by the surfaces are those by the gap, which the adjoint has anyway.
 
-use super::march::{moved, product};
-use super::quantity::{Worth, cell_area_m2};
+use super::field::{moved, product, zeros};
+use super::gradient::RunningInGradient;
+use super::march::{Block, March};
+use super::quantity::{RunningInQuantity, Worth, area_slope};
 use super::rate::{Rate, worn};
-use super::{March, MarchError, MarchOptions, RunningInQuantity, Stage};
-use crate::cranktrain::{BearingOutput, BearingParameter, JournalBearing, SurfaceField};
+use super::stage::{MarchError, MarchOptions, Stage, variable_count};
+use crate::cranktrain::{BearingOutput, JournalBearing, SurfaceField};
 use crate::gradient::{EngineName, engine};
 use crate::orbit::{Quantity, Reduction};
 use crate::run::{Cancel, Cost};
+use std::sync::Arc;
 
-/// Derivatives of one quantity of a running-in.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunningInGradient {
-    /// By the parameters of each stage's bearing; a parameter common to all stages has their sum.
-    pub by_stage: Vec<Vec<f64>>,
-    /// By the duration of each stage.
-    pub by_duration: Vec<f64>,
-    /// Work done.
-    pub cost: Cost,
-}
-
-/// Gradient of a quantity by everything a programme depends on.
-pub fn march_adjoint(
+/// Gradients of quantities by everything a programme depends on, a backward sweep over the programme for each.
+pub(super) fn march_adjoint(
     stages: &[Stage],
     march: &March,
     options: &MarchOptions,
-    of: RunningInQuantity,
+    of: &[RunningInQuantity],
     cancel: &Cancel,
 ) -> Result<RunningInGradient, MarchError> {
     let last = stages.last().ok_or_else(|| MarchError::Parameters("no stages".to_owned()))?;
-    let worth = of.worth(march, &last.model);
-    let varied = |s: &Stage| {
-        let all = &s.model.setup().parameters;
-        all.iter().filter(|p| **p != BearingParameter::FilmTemperature).count()
-    };
-    let mut back = Back {
-        stages,
-        options,
-        cancel,
-        gradient: RunningInGradient {
-            by_stage: stages.iter().map(|s| vec![0.0; varied(s)]).collect(),
-            by_duration: (0..stages.len())
-                .map(|s| worth.duration + if s + 1 == stages.len() { worth.last_duration } else { 0.0 })
-                .collect(),
-            cost: Cost::default(),
-        },
-    };
-    back.area(&worth, &last.model);
-    let mut later = worth.worn.clone();
-    if worth.last_loss != 0.0 {
-        let at = (stages.len() - 1, &march.worn_m);
-        let by = back.cycle(at, &march.last, worth.last_loss, &SurfaceField::default())?;
-        later = moved(&later, 1.0, &by);
+    let mut found = RunningInGradient { rows: Vec::new(), cost: Cost::default() };
+    let area = area_slope(last, variable_count(stages));
+    for quantity in of {
+        let worth = quantity.worth(march, &last.model);
+        let row = area.iter().map(|a| worth.area * a).collect();
+        let mut back = Back { stages, options, cancel, row, near: None, cost: Cost::default() };
+        back.run(march, &worth)?;
+        found.rows.push(back.row);
+        found.cost += back.cost;
     }
-    for (k, block) in march.blocks.iter().enumerate().rev() {
-        let in_last = block.stage + 1 == stages.len();
-        let (h, e) = (block.length_s, worth.energy + if in_last { worth.last_energy } else { 0.0 });
-        let [k1, k2] = [0, 1].map(|r| options.depths(&block.rates[r]));
-        let half = moved(&zeros(&later), 0.5 * h, &later);
-        let second = back.cycle((block.stage, &block.reached_m), &block.rates[1], 0.5 * e * h, &half)?;
-        let begins = in_last && (k == 0 || march.blocks[k - 1].stage != block.stage);
-        let first_loss = if begins { worth.first_loss } else { 0.0 };
-        let on_first = moved(&half, h, &second);
-        let at = (block.stage, &block.worn_m);
-        let first = back.cycle(at, &block.rates[0], 0.5 * e * h + first_loss, &on_first)?;
-        let losses = block.rates[0].loss_w() + block.rates[1].loss_w();
-        let by_length =
-            0.5 * e * losses + 0.5 * (product(&later, &k1) + product(&later, &k2)) + product(&second, &k1);
-        back.gradient.by_duration[block.stage] += by_length * h / stages[block.stage].duration_s;
-        later = moved(&moved(&later, 1.0, &first), 1.0, &second);
-    }
-    Ok(back.gradient)
-}
-
-fn zeros(like: &SurfaceField) -> SurfaceField {
-    SurfaceField { shell: vec![0.0; like.shell.len()], journal: vec![0.0; like.journal.len()] }
+    Ok(found)
 }
 
 struct Back<'a> {
     stages: &'a [Stage],
     options: &'a MarchOptions,
     cancel: &'a Cancel,
-    gradient: RunningInGradient,
+    /// Derivatives by the variables.
+    row: Vec<f64>,
+    /// The cycle looked at last.
+    near: Option<Arc<Rate>>,
+    cost: Cost,
 }
 
 impl Back<'_> {
-    /// What the area of a cell is worth, by width and diameter.
-    fn area(&mut self, worth: &Worth, model: &JournalBearing) {
-        let (setup, area) = (model.setup(), cell_area_m2(model));
-        let stage = self.stages.len() - 1;
-        for (p, bar) in setup.parameters.iter().zip(&mut self.gradient.by_stage[stage]) {
-            match p {
-                BearingParameter::Width => *bar += worth.area * area / setup.width_m,
-                BearingParameter::Diameter => *bar += worth.area * area / setup.diameter_m,
-                _ => {}
-            }
+    fn run(&mut self, march: &March, worth: &Worth) -> Result<(), MarchError> {
+        let mut later = worth.worn.clone();
+        if worth.last_loss != 0.0 {
+            let at = (self.stages.len() - 1, &march.worn_m);
+            let by = self.cycle(at, &march.last, worth.last_loss, &SurfaceField::default())?;
+            later = moved(&later, 1.0, &by);
         }
+        for (k, block) in march.blocks.iter().enumerate().rev() {
+            let in_last = block.stage + 1 == self.stages.len();
+            let begins = in_last && (k == 0 || march.blocks[k - 1].stage != block.stage);
+            later = self.block(block, worth, (in_last, begins), &later)?;
+        }
+        Ok(())
     }
 
-    /// Pulls weights on the loss and on the wear of a cycle back to the parameters, which are added up, and to its surfaces.
+    /// Over a block: the worth of the surfaces before it, given that behind it.
+    fn block(
+        &mut self,
+        block: &Block,
+        worth: &Worth,
+        (in_last, begins): (bool, bool),
+        later: &SurfaceField,
+    ) -> Result<SurfaceField, MarchError> {
+        let h = block.length_s;
+        let e = worth.energy + if in_last { worth.last_energy } else { 0.0 };
+        let [k1, k2] = [0, 1].map(|r| self.options.depths(&block.rates[r]));
+        let half = moved(&zeros(later), 0.5 * h, later);
+        let second = self.cycle((block.stage, &block.reached_m), &block.rates[1], 0.5 * e * h, &half)?;
+        let first_loss = if begins { worth.first_loss } else { 0.0 };
+        let on_first = moved(&half, h, &second);
+        let at = (block.stage, &block.worn_m);
+        let first = self.cycle(at, &block.rates[0], 0.5 * e * h + first_loss, &on_first)?;
+        let losses = block.rates[0].loss_w() + block.rates[1].loss_w();
+        let by_length = worth.duration
+            + if in_last { worth.last_duration } else { 0.0 }
+            + 0.5 * e * losses
+            + 0.5 * (product(later, &k1) + product(later, &k2))
+            + product(&second, &k1);
+        let stage = &self.stages[block.stage];
+        if let Some(v) = stage.duration_variable {
+            self.row[v] += by_length * h / stage.duration_s;
+        }
+        Ok(moved(&moved(later, 1.0, &first), 1.0, &second))
+    }
+
+    /// Pulls weights on the loss and on the wear of a cycle back to the variables, which are added up, and to its surfaces.
     fn cycle(
         &mut self,
         (stage, worn_m): (usize, &SurfaceField),
-        rate: &Rate,
+        rate: &Arc<Rate>,
         on_loss: f64,
         on_depth: &SurfaceField,
     ) -> Result<SurfaceField, MarchError> {
@@ -123,27 +116,25 @@ impl Back<'_> {
         let marks =
             SurfaceField { shell: times(shell, &on_depth.shell), journal: times(journal, &on_depth.journal) };
         let wears = marks.shell.iter().chain(&marks.journal).any(|m| *m != 0.0);
-        let model = worn(&self.stages[stage].model, worn_m, marks)?;
         let mean = |o: BearingOutput| Quantity { output: o.index(), reduction: Reduction::Mean };
-        let mut of = Vec::new();
-        let mut weights = Vec::new();
-        if on_loss != 0.0 {
-            of.push(mean(BearingOutput::Loss));
-            weights.push(on_loss);
-        }
-        if wears {
-            of.push(mean(BearingOutput::Rubbing));
-            weights.push(1.0);
-        }
+        let wanted = [(on_loss != 0.0, BearingOutput::Loss, on_loss), (wears, BearingOutput::Rubbing, 1.0)];
+        let (of, weights): (Vec<Quantity>, Vec<f64>) =
+            wanted.into_iter().filter(|(is, ..)| *is).map(|(_, o, w)| (mean(o), w)).unzip();
         let mut by = zeros(worn_m);
         if of.is_empty() {
             return Ok(by);
         }
+        let stage = &self.stages[stage];
+        let at = (&stage.model, worn_m);
+        let rate = rate.complete(at, self.options, &mut self.near, self.cancel, &mut self.cost)?;
+        let model = worn(&stage.model, worn_m, marks)?;
         let adjoint = engine::<JournalBearing>(EngineName::Adj, 0.0);
         let table = adjoint.gradient(&model, &rate.orbit, &self.options.orbit, &of, self.cancel)?;
-        self.gradient.cost += table.cost;
+        self.cost += table.cost;
         for ((row, fields), w) in table.rows.iter().zip(&table.fields).zip(&weights) {
-            self.gradient.by_stage[stage].iter_mut().zip(row).for_each(|(sum, g)| *sum += w * g);
+            for (g, v) in row.iter().zip(&stage.variables) {
+                self.row[*v] += w * g;
+            }
             by = moved(&by, *w, &model.by_gap(fields));
         }
         Ok(by)

@@ -7,18 +7,25 @@
 //!
 //! Wear is slow: over one working cycle the surfaces stand still, and the settled cycle with the surfaces of the moment says how
 //! fast they wear (cycle jump). [`march`] integrates over a programme of [`Stage`]s in blocks of many cycles, by the method of
-//! Heun with that of Euler inside: their difference is the error of a block, and decides its length. [`march_adjoint`] carries
-//! derivatives back through the blocks: at each of them one adjoint of a cycle, whose weights on the rubbing of every cell are
-//! what the depth there is worth later on. Block lengths are frozen in a derivative, like the steps of a cycle.
+//! Heun with that of Euler inside: their difference is the error of a block, and decides its length. [`march_gradient`] gives
+//! derivatives by five engines; ADJ carries them back through the blocks: at each of them one adjoint of a cycle, whose weights on
+//! the rubbing of every cell are what the depth there is worth later on. Block lengths are frozen in a derivative, like the steps
+//! of a cycle.
 //!
 //! Deliberately not here: study files, words, optimisation; roughness that changes with wear.
 
 mod adjoint;
+mod field;
+mod gradient;
 mod march;
 mod quantity;
 mod rate;
+mod stage;
+mod tangent;
+mod walk;
 
-pub use adjoint::{RunningInGradient, march_adjoint};
-pub use march::{Block, March, MarchError, MarchOptions, Stage, march, replay};
+pub use gradient::{MarchEngine, RunningInGradient, march_gradient};
+pub use march::{Block, End, March, march, replay};
 pub use quantity::{RunningInQuantity, Worth, worn_volume_m3};
 pub use rate::{Rate, settled_with_wear};
+pub use stage::{MarchError, MarchOptions, Settled, Stage};

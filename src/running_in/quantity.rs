@@ -1,7 +1,8 @@
 //! Numbers from a running-in, with what each part of the march is worth to them.
 
-use super::{Block, March};
-use crate::cranktrain::{JournalBearing, SurfaceField};
+use super::march::{Block, March};
+use super::stage::Stage;
+use crate::cranktrain::{BearingParameter, JournalBearing, SurfaceField};
 use crate::film::Mesh;
 use crate::math::PowerMean;
 use std::f64::consts::PI;
@@ -59,6 +60,19 @@ fn depth_sum_m(worn_m: &SurfaceField) -> f64 {
 pub(super) fn cell_area_m2(model: &JournalBearing) -> f64 {
     let (s, mesh) = (model.setup(), model.film().mesh());
     PI * s.diameter_m * s.width_m / mesh.map_or(1, Mesh::cells) as f64
+}
+
+/// Derivatives of the area of a cell by the variables of a programme with this last stage.
+pub(super) fn area_slope(last: &Stage, variables: usize) -> Vec<f64> {
+    let (setup, area, mut slope) = (last.model.setup(), cell_area_m2(&last.model), vec![0.0; variables]);
+    for (p, v) in setup.parameters.iter().zip(&last.variables) {
+        slope[*v] += match p {
+            BearingParameter::Width => area / setup.width_m,
+            BearingParameter::Diameter => area / setup.diameter_m,
+            _ => 0.0,
+        };
+    }
+    slope
 }
 
 impl RunningInQuantity {

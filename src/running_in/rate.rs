@@ -1,10 +1,10 @@
 //! How fast a bearing wears with the surfaces of the moment: one settled cycle.
 
-use super::MarchError;
+use super::stage::{MarchError, MarchOptions};
 use crate::cranktrain::{BearingOutput, BearingSetup, JournalBearing, SurfaceField};
 use crate::dae::At;
 use crate::orbit::{Orbit, OrbitOptions, settle};
-use crate::run::Cancel;
+use crate::run::{Cancel, Cost};
 use std::sync::Arc;
 
 /// A settled cycle and what it rubs.
@@ -30,6 +30,39 @@ impl Rate {
     /// Share of contact in it.
     pub fn contact_share(&self) -> f64 {
         self.mean(BearingOutput::ContactLoss) / self.loss_w()
+    }
+
+    /// Memory of the states, bytes.
+    pub(super) fn state_bytes(&self) -> usize {
+        self.orbit.states.iter().map(|z| z.len() * size_of::<f64>()).sum()
+    }
+
+    /// The same without the states of the cycle.
+    pub(super) fn without_states(&self) -> Self {
+        let mut orbit = Orbit { states: Vec::new(), ..self.orbit.clone() };
+        orbit.states = vec![Vec::new(); self.orbit.steps()];
+        Self { orbit, rubbing_w_m2: self.rubbing_w_m2.clone() }
+    }
+
+    /// The cycle with its states: settled again, from the one looked at before, if they were not kept.
+    pub(super) fn complete(
+        self: &Arc<Self>,
+        (model, worn_m): (&JournalBearing, &SurfaceField),
+        options: &MarchOptions,
+        near: &mut Option<Arc<Self>>,
+        cancel: &Cancel,
+        cost: &mut Cost,
+    ) -> Result<Arc<Self>, MarchError> {
+        let found = if self.state_bytes() > 0 {
+            self.clone()
+        } else {
+            let start = near.as_ref().map(|r| &r.orbit);
+            let again = settled_with_wear(model, worn_m, &options.orbit, start, cancel)?;
+            *cost += again.orbit.cost;
+            Arc::new(again)
+        };
+        *near = Some(found.clone());
+        Ok(found)
     }
 }
 

@@ -165,7 +165,7 @@ fn case(
     film: Arc<dyn FilmModel>,
 ) -> Result<Case<JournalBearing>, InvalidParameters> {
     let at = &study.points[point];
-    let (model, variables) = bearing_with(study, bearing, at, None, film)?;
+    let (model, variables) = bearing_with(study, bearing, at, Own::default(), film)?;
     Ok(Case {
         model,
         variables,
@@ -176,33 +176,53 @@ fn case(
     })
 }
 
-/// A bearing at an operating point, if wanted with an oil temperature of its own, and which variables its parameters are.
+/// What a stage of a running-in programme has of its own.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Own {
+    /// Which stage it is.
+    pub stage: Option<usize>,
+    /// Temperature of its oil, K.
+    pub inlet_k: Option<f64>,
+}
+
+/// A bearing at an operating point or at a stage of a programme, and which variables its parameters are.
 pub(super) fn bearing_at(
     study: &Study,
     bearing: usize,
     at: &OperatingPoint,
-    inlet_k: Option<f64>,
+    own: Own,
 ) -> Result<(JournalBearing, Vec<usize>), InvalidParameters> {
-    bearing_with(study, bearing, at, inlet_k, film(study, bearing))
+    bearing_with(study, bearing, at, own, film(study, bearing))
 }
 
 fn bearing_with(
     study: &Study,
     bearing: usize,
     at: &OperatingPoint,
-    inlet_k: Option<f64>,
+    own: Own,
     film: Arc<dyn FilmModel>,
 ) -> Result<(JournalBearing, Vec<usize>), InvalidParameters> {
     let plan = &study.bearings[bearing];
-    let own = |p: &super::ParameterPlan| p.variable.parameter == BearingParameter::InletTemperature;
-    let mine =
-        |p: &super::ParameterPlan| p.bearing.is_none_or(|b| b == bearing) && !(inlet_k.is_some() && own(p));
-    let all = study.variables().enumerate().filter(|(_, p)| mine(p));
-    let (variables, parameters) = all.map(|(j, p)| (j, p.variable.parameter)).unzip();
-    let load = Arc::new(load(study, &plan.load, at.load_factor)?);
-    let mut setup =
-        BearingSetup { speed_rad_s: at.speed_rad_s, parameters, ..setup(study, plan, film, load) };
-    setup.inlet_temperature_k = inlet_k.unwrap_or(setup.inlet_temperature_k);
+    let oil = |p: &super::ParameterPlan| p.variable.parameter == Some(BearingParameter::InletTemperature);
+    let of_stage = |p: &super::ParameterPlan| p.stage.is_some() && p.stage == own.stage;
+    let cooled = own.inlet_k.is_some() || study.variables().any(|p| of_stage(p) && oil(p));
+    let common = |p: &super::ParameterPlan| {
+        p.stage.is_none() && p.bearing.is_none_or(|b| b == bearing) && !(cooled && oil(p))
+    };
+    let all = study.variables().enumerate().filter(|(_, p)| common(p) || of_stage(p));
+    let (variables, parameters): (Vec<usize>, Vec<BearingParameter>) =
+        all.filter_map(|(j, p)| p.variable.parameter.map(|parameter| (j, parameter))).unzip();
+    let of_factor = |factor: f64| load(study, &plan.load, factor).map(Arc::new);
+    let varies = parameters.contains(&BearingParameter::LoadFactor);
+    let (full, idle) = if varies { (1.0, Some(of_factor(0.0)?)) } else { (at.load_factor, None) };
+    let mut setup = BearingSetup {
+        speed_rad_s: at.speed_rad_s,
+        parameters,
+        idle,
+        load_factor: at.load_factor,
+        ..setup(study, plan, film, of_factor(full)?)
+    };
+    setup.inlet_temperature_k = own.inlet_k.unwrap_or(setup.inlet_temperature_k);
     Ok((JournalBearing::new(setup)?, variables))
 }
 

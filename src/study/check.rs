@@ -129,9 +129,9 @@ impl Study {
 
     /// Whether half of the width of a bearing tells all.
     pub(super) fn half_suffices(&self, bearing: usize) -> bool {
-        let tilts = self
-            .variables()
-            .any(|p| p.bearing == Some(bearing) && matches!(p.variable.parameter, BearingParameter::Tilt(_)));
+        let tilts = self.variables().any(|p| {
+            p.bearing == Some(bearing) && matches!(p.variable.parameter, Some(BearingParameter::Tilt(_)))
+        });
         self.bearings[bearing].symmetric(tilts)
     }
 

@@ -38,6 +38,7 @@ mod oil;
 mod parameters;
 mod pareto;
 mod plans;
+mod programme;
 mod prove;
 mod rheology;
 mod robust;

@@ -79,6 +79,7 @@ fn boxed(
     let plan = |(t, start): (&Target, &f64)| ParameterPlan {
         name: t.name.clone(),
         bearing: t.bearing,
+        stage: t.stage,
         variable: t.variable,
         lower,
         upper,

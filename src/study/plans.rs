@@ -45,14 +45,17 @@ pub struct BearingPlan {
 }
 
 impl BearingPlan {
-    /// Value of what can be varied; none for what belongs to the oil.
+    /// Value of what can be varied; none for what belongs to the oil or to a stage.
     pub(super) fn value(&self, parameter: BearingParameter) -> Option<f64> {
         let rough = self.roughness.as_ref();
         match parameter {
             BearingParameter::Width => Some(self.width_m),
             BearingParameter::Diameter => Some(self.diameter_m),
             BearingParameter::DiametralClearance => Some(self.diametral_clearance_m),
-            BearingParameter::InletTemperature | BearingParameter::FilmTemperature => None,
+            BearingParameter::InletTemperature
+            | BearingParameter::FilmTemperature
+            | BearingParameter::LoadFactor
+            | BearingParameter::Speed => None,
             BearingParameter::JournalRoughness => rough.map(|r| r.journal_m),
             BearingParameter::ShellRoughness => rough.map(|r| r.shell_m),
             BearingParameter::SupplyPressure => self.supply.as_ref().map(|s| s.pressure_pa),
@@ -150,6 +153,8 @@ pub struct ParameterPlan {
     pub name: String,
     /// Bearing it belongs to; `None` for the oil.
     pub bearing: Option<usize>,
+    /// Stage of the running-in programme it belongs to, if any.
+    pub stage: Option<usize>,
     /// Which property.
     pub variable: Variable,
     /// Lower bound, SI units.

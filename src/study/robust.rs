@@ -124,7 +124,15 @@ fn tolerance(
                 let start = lexicon.value(&target)?;
                 let (lower, upper) = lexicon.allowed(&target);
                 let (bearing, variable) = (target.bearing, target.variable);
-                plan.beside.push(ParameterPlan { name: target.name, bearing, variable, lower, upper, start });
+                plan.beside.push(ParameterPlan {
+                    name: target.name,
+                    bearing,
+                    stage: target.stage,
+                    variable,
+                    lower,
+                    upper,
+                    start,
+                });
                 parameters.len() + plan.beside.len() - 1
             }
         };

@@ -1,10 +1,11 @@
 //! The design that was found, run in: the march of each bearing through the programme, and the report of it.
 
-use super::build::Plan;
+use super::build::{Own, Plan};
 use super::check::Study;
 use super::limits::{ACTIVE, ACTIVE_GAP, MET};
 use super::plans::OperatingPoint;
-use super::running_in::{RunningInPlan, StagePlan, bearing_of, march_options, stages};
+use super::programme::{bearing_of, march_options, programme, stages};
+use super::running_in::{RunningInPlan, StagePlan};
 use super::searches::Searched;
 use crate::cranktrain::{BearingOutput, JournalBearing, SurfaceField};
 use crate::optimise::Minimum;
@@ -33,7 +34,7 @@ pub(super) fn report(study: &Study, found: &Searched, context: RunContext<'_>) -
     };
     let bearings = (0..study.bearings.len()).map(|b| bearing(study, wanted, plan, b, x, context));
     Some(RunningInReport {
-        stages: wanted.stages.iter().map(stage).collect(),
+        stages: programme(study, wanted, x).iter().map(stage).collect(),
         wear_depth_tolerance_um: wanted.tolerance_m * 1e6,
         minimised: minimised(wanted, &found.minimum),
         limits: limits(study, wanted, found),
@@ -58,15 +59,12 @@ fn limits(study: &Study, wanted: &RunningInPlan, found: &Searched) -> Vec<WearLi
         return Vec::new();
     };
     let tolerance = study.optimiser.options.settings.tolerance.max(MET);
-    let kinds = [
-        ("max-wear-depth", wanted.max_depth_m, 1e6, "um"),
-        ("wear-volume", wanted.max_volume_m3, 1e9, "mm3"),
-    ];
     let mut rows = Vec::new();
     for bearing in &study.bearings {
-        for (name, limit, scale, unit) in kinds {
+        for limit in &wanted.limits {
             let k = found.plan.limits.len() + rows.len();
-            let (Some(limit), Some(excess)) = (limit, values.inequalities.get(k)) else { continue };
+            let (limit, scale, unit, name) = (limit.limit, limit.scale, limit.unit, limit.name);
+            let Some(excess) = values.inequalities.get(k) else { continue };
             let multiplier = found.minimum.multipliers.inequalities.get(k).copied().unwrap_or(0.0);
             let active = *excess > -ACTIVE_GAP && multiplier > ACTIVE * values.objective.abs();
             rows.push(WearLimitReport {
@@ -96,7 +94,7 @@ fn bearing(
     let mut found = BearingRunningIn { bearing: own.name.clone(), ..BearingRunningIn::default() };
     let options = march_options(study, wanted, bearing);
     let stages = match stages(study, wanted, plan, bearing, x) {
-        Ok((stages, _)) => stages,
+        Ok(stages) => stages,
         Err(e) => return BearingRunningIn { failure: Some(e.to_string()), ..found },
     };
     let total_s: f64 = stages.iter().map(|s| s.duration_s).sum();
@@ -105,7 +103,7 @@ fn bearing(
         let name = format!("running in {}: {done} % of the programme", own.name);
         context.progress.tell(&Event::Stage { name });
     };
-    match march(&stages, &options, None, context.cancel, &mut tell) {
+    match march(&stages, &options, context.cancel, &mut tell) {
         Ok(march) => {
             fill(&mut found, wanted, &stages, &march);
             found.operating_points = before_after(study, plan, (bearing, x), &march, context);
@@ -156,7 +154,7 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
     for (k, end) in march.ends.iter().enumerate() {
         let mine = march.blocks.iter().filter(|b| b.stage == k);
         found.blocks.extend(mine.map(|b| row(k, b.from_s, &b.worn_m, &b.rates[0])));
-        found.blocks.push(row(k, end.0, &end.1, &end.2));
+        found.blocks.push(row(k, end.at_s, &end.worn_m, &end.rate));
     }
     let begins = march.blocks.iter().find(|b| b.stage + 1 == stages.len());
     found.first_contact_share = begins.map_or(march.last.contact_share(), |b| b.rates[0].contact_share());
@@ -184,7 +182,7 @@ fn before_after(
     context: RunContext<'_>,
 ) -> Vec<BeforeAfter> {
     let one = |point: &OperatingPoint| -> Option<BeforeAfter> {
-        let (model, _) = bearing_of(study, plan, (bearing, x), point, None).ok()?;
+        let (model, _) = bearing_of(study, plan, (bearing, x), point, Own::default()).ok()?;
         let settled = |worn: &SurfaceField, near| {
             settled_with_wear(&model, worn, &study.orbit, near, context.cancel).ok()
         };

@@ -10,18 +10,15 @@
 
 use super::build::Plan;
 use super::check::Study;
-use super::running_in::{RunningInPlan, march_options, stages};
+use super::programme::{march_options, stages};
+use super::running_in::RunningInPlan;
 use crate::optimise::{ConstrainedProblem, EvaluationError, LinearConstraint, Slopes, Values};
 use crate::run::{Cost, IterationEvent, RunContext};
 use crate::running_in::{
-    March, MarchError, MarchOptions, RunningInGradient, RunningInQuantity, Stage, march, march_adjoint,
-    replay,
+    March, MarchEngine, MarchError, MarchOptions, RunningInQuantity, Stage, march, march_gradient, replay,
 };
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
-
-/// Sharpness of the smooth maximum of the wear depth.
-const SHARPNESS: f64 = 100.0;
 
 /// One bearing of the problem.
 struct Own {
@@ -34,8 +31,6 @@ struct Own {
 /// A bearing marched through its programme at a design.
 struct Marched {
     stages: Vec<Stage>,
-    /// Which variables the parameters of each stage are.
-    variables: Vec<Vec<usize>>,
     found: March,
 }
 
@@ -76,9 +71,9 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
         let own = |bearing: usize| {
             let plan_of = &study.bearings[bearing];
             let options = march_options(study, wanted, bearing);
-            let (stages, _) = stages(study, wanted, plan, bearing, start)
+            let stages = stages(study, wanted, plan, bearing, start)
                 .map_err(|e| EvaluationError::Failed(e.to_string()))?;
-            let found = march(&stages, &options, None, context.cancel, &mut |_| {}).map_err(refused)?;
+            let found = march(&stages, &options, context.cancel, &mut |_| {}).map_err(refused)?;
             let (count, shares) = (f64::from(plan_of.count), found.shares(&stages));
             Ok(Own { bearing, count, options, shares })
         };
@@ -103,24 +98,17 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
             return Ok(known.marched.clone());
         }
         let one = |own: &Own| {
-            let (stages, variables) = stages(self.study, self.wanted, self.plan, own.bearing, x)
+            let stages = stages(self.study, self.wanted, self.plan, own.bearing, x)
                 .map_err(|e| EvaluationError::Failed(e.to_string()))?;
             let found =
                 replay(&stages, &own.shares, &own.options, None, self.context.cancel).map_err(refused)?;
             self.spend(found.cost);
-            Ok(Marched { stages, variables, found })
+            Ok(Marched { stages, found })
         };
         let all: Result<Vec<Marched>, EvaluationError> = self.own.par_iter().map(one).collect();
         let marched = Arc::new(all?);
         *latest() = Some(Latest { x: x.to_vec(), marched: marched.clone() });
         Ok(marched)
-    }
-
-    /// Limited quantities with their limits.
-    fn limits(&self) -> Vec<(RunningInQuantity, f64)> {
-        let depth = self.wanted.max_depth_m.map(|limit| (RunningInQuantity::MaxDepth(SHARPNESS), limit));
-        let volume = self.wanted.max_volume_m3.map(|limit| (RunningInQuantity::WearVolume, limit));
-        depth.into_iter().chain(volume).collect()
     }
 
     fn minimised(&self) -> RunningInQuantity {
@@ -139,7 +127,7 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
         for (own, Marched { stages, found, .. }) in self.own.iter().zip(&*self.marched(x)?) {
             let Some(Stage { model, .. }) = stages.last() else { continue };
             values.objective += own.count * self.minimised().value(found, model);
-            let beyond = self.limits().into_iter().map(|(of, limit)| of.value(found, model) / limit - 1.0);
+            let beyond = self.wanted.limits.iter().map(|l| l.quantity.value(found, model) / l.limit - 1.0);
             values.inequalities.extend(beyond);
         }
         Ok(values)
@@ -148,25 +136,23 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
     fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
         let mut slopes = self.plan.problem.slopes(x)?;
         slopes.objective.fill(0.0);
-        for (own, Marched { stages, variables, found }) in self.own.iter().zip(&*self.marched(x)?) {
-            let row = |of: RunningInQuantity, by: f64, into: &mut [f64]| -> Result<(), EvaluationError> {
-                let table: RunningInGradient =
-                    march_adjoint(stages, found, &own.options, of, self.context.cancel).map_err(refused)?;
-                self.spend(table.cost);
-                for (row, variables) in table.by_stage.iter().zip(variables) {
-                    for (g, &j) in row.iter().zip(variables) {
-                        if let Some(entry) = into.get_mut(j) {
-                            *entry += by * g;
-                        }
-                    }
-                }
-                Ok(())
-            };
-            row(self.minimised(), own.count, &mut slopes.objective)?;
-            for (of, limit) in self.limits() {
-                let mut line = vec![0.0; x.len()];
-                row(of, 1.0 / limit, &mut line)?;
-                slopes.inequalities.push(line);
+        let (lower, upper) = self.bounds();
+        let steps: Vec<f64> =
+            lower.iter().zip(&upper).map(|(l, u)| self.study.perturbation * (u - l)).collect();
+        let engine = MarchEngine { name: self.study.engine, steps: &steps };
+        let of: Vec<RunningInQuantity> =
+            std::iter::once(self.minimised()).chain(self.wanted.limits.iter().map(|l| l.quantity)).collect();
+        for (own, Marched { stages, found }) in self.own.iter().zip(&*self.marched(x)?) {
+            let table = march_gradient(engine, stages, found, &own.options, &of, self.context.cancel);
+            let table = table.map_err(refused)?;
+            self.spend(table.cost);
+            let mut rows = table.rows.into_iter();
+            let objective = rows.next().unwrap_or_default();
+            slopes.objective.iter_mut().zip(&objective).for_each(|(sum, g)| *sum += own.count * g);
+            for (mut row, limit) in rows.zip(&self.wanted.limits) {
+                row.iter_mut().for_each(|g| *g /= limit.limit);
+                row.resize(x.len(), 0.0);
+                slopes.inequalities.push(row);
             }
         }
         Ok(slopes)

@@ -1,9 +1,9 @@
-//! What can be a design parameter: properties of bearings and oil, with their names and units.
+//! What can be a design parameter: properties of bearings, oil and running-in programme, with their names and units.
 
 use super::plans::BearingPlan;
 use crate::cranktrain::{BearingParameter, BearingShape, Tilt};
 use crate::report::short;
-use crate::units::{Angle, Length, Pressure, Temperature, tidy};
+use crate::units::{Angle, Duration, Length, Pressure, Rotation, Temperature, tidy};
 
 /// Size of a degree.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -11,8 +11,8 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// A property of a bearing or its oil that can be a design parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variable {
-    /// What it is in the model.
-    pub parameter: BearingParameter,
+    /// What it is in the model of a bearing; none for the duration of a stage, which no bearing sees.
+    pub parameter: Option<BearingParameter>,
     /// Unit in reports; "1" for numbers without one.
     pub unit: &'static str,
     /// Size of that unit, and its zero, in SI units.
@@ -20,21 +20,36 @@ pub struct Variable {
 }
 
 impl Variable {
-    fn new(parameter: BearingParameter, unit: &'static str) -> Self {
+    fn new(parameter: impl Into<Option<BearingParameter>>, unit: &'static str) -> Self {
         let scale = match unit {
             "mm" => (1e-3, 0.0),
             "um" => (1e-6, 0.0),
             "bar" => (1e5, 0.0),
             "deg" => (DEGREE, 0.0),
             "degC" => (1.0, 273.15),
+            "h" => (3600.0, 0.0),
+            "rpm" => (std::f64::consts::PI / 30.0, 0.0),
             _ => (1.0, 0.0),
         };
-        Self { parameter, unit, scale }
+        Self { parameter: parameter.into(), unit, scale }
     }
 
     /// Variables of the oil, written `oil.<key>`, shared by all bearings.
     pub(super) fn of_oil() -> Vec<(String, Self)> {
         vec![("inlet_temperature".to_owned(), Self::new(BearingParameter::InletTemperature, "degC"))]
+    }
+
+    /// Variables of a stage of a running-in programme, written `running_in.<stage>.<key>`.
+    pub(super) fn of_stage() -> Vec<(String, Self)> {
+        let new = |key: &str, parameter: Option<BearingParameter>, unit| {
+            (key.to_owned(), Self::new(parameter, unit))
+        };
+        vec![
+            new("duration", None, "h"),
+            new("speed", Some(BearingParameter::Speed), "rpm"),
+            new("load_factor", Some(BearingParameter::LoadFactor), "1"),
+            new("oil_inlet_temperature", Some(BearingParameter::InletTemperature), "degC"),
+        ]
     }
 
     /// Variables that every bearing has, written `<bearing>.<key>`.
@@ -106,6 +121,8 @@ impl Variable {
         match self.unit {
             "degC" => text.parse::<Temperature>().map(|v| v.si()).map_err(|e| e.to_string()),
             "deg" => text.parse::<Angle>().map(|v| v.si()).map_err(|e| e.to_string()),
+            "h" => text.parse::<Duration>().map(|v| v.si()).map_err(|e| e.to_string()),
+            "rpm" => text.parse::<Rotation>().map(|v| v.si()).map_err(|e| e.to_string()),
             "bar" => text.parse::<Pressure>().map(|v| v.si()).map_err(|e| e.to_string()),
             "1" => {
                 let number = text.trim().parse().ok().filter(|v: &f64| v.is_finite());

@@ -1,11 +1,11 @@
 //! The fields through which the parameters of a bearing act, and the sensitivity map that falls out of them.
 //!
 //! ```text
-//! u = (scalars of the film's input | film temperature | gap added by the shell, per cell
+//! u = (scalars of the film's input | film temperature | load factor | speed | gap added by the shell, per cell
 //!      | gap added by the journal, per cell of a grid that turns with it | coefficients of shapes that turn)
 //! ```
 //!
-//! A derivative by the third and fourth part is the derivative by the local gap: where on the shell, and where on the
+//! A derivative by the fifth and sixth part is the derivative by the local gap: where on the shell, and where on the
 //! journal, a micrometre matters. The derivative by a profile's coefficient is its projection on the profile's base
 //! function: exactly and without further work for shapes that stand still; shapes that turn have coefficients of their own
 //! in `u`, because the journal's grid interpolates linearly between its columns. A grid that turns by `a` puts
@@ -26,8 +26,11 @@ pub struct GapSensitivity {
 
 /// Where the film temperature stands in `u`.
 pub(super) const FILM_TEMPERATURE: usize = INPUTS;
+/// Where the load factor stands in `u`, and the speed of the crankshaft (what of it is not in the film's input).
+pub(super) const LOAD_FACTOR: usize = INPUTS + 1;
+pub(super) const SPEED: usize = INPUTS + 2;
 /// Scalars in front of the gaps.
-const SCALARS: usize = INPUTS + 1;
+const SCALARS: usize = INPUTS + 3;
 
 /// Where the parts of `u` stand.
 #[derive(Debug, Clone, Copy)]
@@ -61,7 +64,7 @@ impl JournalBearing {
 
     /// `u_p dp`.
     pub(super) fn fields_along(&self, dp: &[f64], du: &mut [f64]) {
-        let (mut input, mut temperature) = (FilmInput::default(), 0.0);
+        let (mut input, mut temperature, mut operation) = (FilmInput::default(), 0.0, [0.0; 2]);
         for (kind, d) in self.setup.parameters.iter().zip(dp) {
             match *kind {
                 BearingParameter::Width => input.width_m += d,
@@ -76,6 +79,8 @@ impl JournalBearing {
                 BearingParameter::ShellRoughness => input.shell_roughness_m += d,
                 BearingParameter::SupplyPressure => input.supply_pressure_pa += d,
                 BearingParameter::Tilt(axis) if self.setup.tilt != Tilt::Free => input.tilt_rad[axis] += d,
+                BearingParameter::LoadFactor => operation[0] += d,
+                BearingParameter::Speed => operation[1] += d,
                 BearingParameter::Tilt(_) | BearingParameter::Shape(..) => {}
             }
         }
@@ -83,6 +88,7 @@ impl JournalBearing {
         du.fill(0.0);
         du[..INPUTS].copy_from_slice(&input.to_array());
         du[FILM_TEMPERATURE] = temperature;
+        [du[LOAD_FACTOR], du[SPEED]] = operation;
         let (head, turning) = du.split_at_mut(parts.turning().start);
         self.shapes.along(dp, &mut head[parts.shell()], turning);
     }
@@ -104,6 +110,8 @@ impl JournalBearing {
                 BearingParameter::ShellRoughness => by.shell_roughness_m,
                 BearingParameter::SupplyPressure => by.supply_pressure_pa,
                 BearingParameter::Tilt(axis) if self.setup.tilt != Tilt::Free => by.tilt_rad[axis],
+                BearingParameter::LoadFactor => u[LOAD_FACTOR],
+                BearingParameter::Speed => u[SPEED],
                 BearingParameter::Tilt(_) | BearingParameter::Shape(..) => 0.0,
             };
         }
@@ -147,6 +155,14 @@ impl JournalBearing {
     pub fn by_gap(&self, fields: &[f64]) -> SurfaceField {
         let parts = self.parts();
         SurfaceField { shell: fields[parts.shell()].to_vec(), journal: fields[parts.journal()].to_vec() }
+    }
+
+    /// The change of the fields that more material worn off is.
+    pub fn gap_along(&self, worn_m: &SurfaceField) -> Vec<f64> {
+        let (parts, mut du) = (self.parts(), vec![0.0; self.field_count()]);
+        du[parts.shell()].iter_mut().zip(&worn_m.shell).for_each(|(u, w)| *u += w);
+        du[parts.journal()].iter_mut().zip(&worn_m.journal).for_each(|(u, w)| *u += w);
+        du
     }
 
     /// The sensitivity map in derivatives by the fields; none for a film without cells.

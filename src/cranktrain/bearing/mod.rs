@@ -17,6 +17,7 @@
 mod fields;
 mod heat;
 mod model;
+mod operation;
 mod rescue;
 mod sensitive;
 mod setup;
@@ -113,7 +114,7 @@ impl JournalBearing {
 
     /// The drive at a time.
     pub fn drive(&self, t_s: f64) -> Drive {
-        self.setup.load.at(t_s * self.setup.speed_rad_s, self.setup.speed_rad_s)
+        self.drive_at(t_s * self.setup.speed_rad_s, self.setup.speed_rad_s)
     }
 
     /// Dynamic viscosity at the film temperature, Pa s.

@@ -14,7 +14,7 @@ const KEEP_GAP: f64 = 0.2;
 
 impl JournalBearing {
     /// Position (`k = 0`) or, behind the motions, velocity (`k = 1`) in a state.
-    fn pair(&self, z: &[f64], k: usize) -> [f64; 2] {
+    pub(super) fn pair(&self, z: &[f64], k: usize) -> [f64; 2] {
         let first = self.layout.n + k * self.layout.motions;
         [z[first], z[first + 1]]
     }

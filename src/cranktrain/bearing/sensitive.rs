@@ -1,12 +1,14 @@
 //! The bearing differentiated, forwards and backwards: the film's derivatives with states and parameters in place of
 //! its input.
 
-use super::fields::FILM_TEMPERATURE;
+use super::fields::{FILM_TEMPERATURE, LOAD_FACTOR, SPEED};
 use super::model::{BearingFactors, BearingRoom};
+use super::operation::Answer;
 use super::{BearingOutput, JournalBearing};
 use crate::dae::{At, Cotangent, Direction, SensitiveDae};
 use crate::film::{
-    FilmChange, FilmCotangent, FilmInput, FilmOutput, FilmPlace, FilmPoint, FilmSite, FilmWeights, Wanted,
+    FilmChange, FilmCotangent, FilmInput, FilmOutput, FilmPlace, FilmPoint, FilmSite, FilmWeights, Mesh,
+    Wanted,
 };
 use crate::math::Singular;
 
@@ -165,18 +167,20 @@ impl SensitiveDae for JournalBearing {
 
     fn push(&self, point: &BearingPoint, at: At, du: &[f64], residual: &mut [f64], memory: &mut [f64]) {
         let (l, n, site) = (self.layout, self.layout.n, point.site());
-        let (input, shape_m) = self.seen_along(point.journal_angle_rad, du);
-        let change = FilmChange { q: &[], rate: &[], input, shape_m: &shape_m };
+        let (mut input, shape_m) = self.seen_along(point.journal_angle_rad, du);
+        let faster = self.faster(at, du[SPEED], &mut input);
+        let change = FilmChange { q: &[], rate: &faster, input, shape_m: &shape_m };
         let d = self.setup.film.tangent_at(&self.place(point, &site, at), &change, Wanted::ALL);
         residual.fill(0.0);
         memory.fill(0.0);
+        self.push_operation(at, du, &mut residual[n..]);
         residual[..n].copy_from_slice(&d.residual);
         memory[..n].copy_from_slice(&d.content);
         let ((sign, row), loads) = (l.force_row(), d.output.loads());
         for a in 0..2 {
-            residual[n + row + a] = sign * loads[a];
+            residual[n + row + a] += sign * loads[a];
             if l.motions == 4 {
-                residual[n + 2 + a] = loads[2 + a];
+                residual[n + 2 + a] += loads[2 + a];
             }
         }
     }
@@ -192,6 +196,11 @@ impl SensitiveDae for JournalBearing {
         let weights = FilmWeights { residual: &v[..n], content: &w[..n], output };
         let bar = self.setup.film.cotangent_at(&self.place(point, &site, at), &weights);
         self.seen_back(point.journal_angle_rad, &bar, u);
+        if self.operation_varies() {
+            let dot = |answer: &Answer| crate::math::dot(&self.border_by(at, answer), &v[n..]);
+            u[LOAD_FACTOR] += dot(&self.by_load_factor(at.t_s));
+            u[SPEED] += dot(&self.by_speed(at.t_s)) + self.faster_back(at, &bar);
+        }
     }
 
     fn output_tangent(&self, point: &BearingPoint, at: At, direction: Direction, dy: &mut [f64]) {
@@ -200,6 +209,7 @@ impl SensitiveDae for JournalBearing {
         let [width, diameter] = [input.width_m, input.diameter_m];
         self.add_motions(direction.z, &mut input);
         input.velocity_m_s = [direction.rate[n], direction.rate[n + 1]];
+        self.faster(at, direction.u[SPEED], &mut input);
         let change = FilmChange { q: &direction.z[..n], rate: &[], input, shape_m: &shape_m };
         let wanted = Wanted { residual: false, content: false, output: true };
         let d = self.setup.film.tangent_at(&self.place(point, &site, at), &change, wanted);
@@ -207,6 +217,44 @@ impl SensitiveDae for JournalBearing {
         let shrink = width / self.setup.width_m + diameter / self.setup.diameter_m;
         dy[BearingOutput::FilmTemperature.index()] = direction.u[FILM_TEMPERATURE];
         dy[BearingOutput::SpecificLoad.index()] = -self.specific_load_pa(at.t_s) * shrink;
+        if self.operation_varies() {
+            let [by_factor, by_speed] = self.specific_load_by(at.t_s);
+            dy[BearingOutput::SpecificLoad.index()] +=
+                by_factor * direction.u[LOAD_FACTOR] + by_speed * direction.u[SPEED];
+        }
+    }
+
+    fn locals(&self) -> usize {
+        2 * self.setup.film.mesh().map_or(0, Mesh::cells)
+    }
+
+    fn add_local_tangent(
+        &self,
+        point: &BearingPoint,
+        at: At,
+        direction: Direction,
+        share: f64,
+        sums: &mut [f64],
+    ) {
+        let (site, cells) = (point.site(), sums.len() / 2);
+        let (mut input, shape_m) = self.seen_along(point.journal_angle_rad, direction.u);
+        self.add_motions(direction.z, &mut input);
+        self.faster(at, direction.u[SPEED], &mut input);
+        let change = FilmChange { q: &[], rate: &[], input, shape_m: &shape_m };
+        let wanted = Wanted { residual: false, content: false, output: true };
+        let d = self.setup.film.tangent_at(&self.place(point, &site, at), &change, wanted);
+        let mut contact = vec![0.0; cells];
+        self.setup.film.contact_pa(&site, &mut contact);
+        let (u, du) = (&site.input, &input);
+        let speed_m_s = u.speed_rad_s * u.diameter_m / 2.0;
+        let faster = (du.speed_rad_s * u.diameter_m + u.speed_rad_s * du.diameter_m) / 2.0;
+        let by = share * speed_m_s.signum();
+        for (p, dp) in contact.iter_mut().zip(&d.contact_pa) {
+            *p = by * (dp * speed_m_s + *p * faster);
+        }
+        let (shell, journal) = sums.split_at_mut(cells);
+        shell.iter_mut().zip(&contact).for_each(|(sum, r)| *sum += r);
+        self.shapes.grid.turn(point.journal_angle_rad, |cell, at, part| journal[at] += part * contact[cell]);
     }
 
     fn output_cotangent(&self, point: &BearingPoint, at: At, w: &[f64], out: Cotangent) {
@@ -222,5 +270,11 @@ impl SensitiveDae for JournalBearing {
         }
         out.u[FILM_TEMPERATURE] += w[BearingOutput::FilmTemperature.index()];
         self.seen_back(point.journal_angle_rad, &bar, out.u);
+        if self.operation_varies() {
+            let [by_factor, by_speed] = self.specific_load_by(at.t_s);
+            let on_load = w[BearingOutput::SpecificLoad.index()];
+            out.u[LOAD_FACTOR] += on_load * by_factor;
+            out.u[SPEED] += on_load * by_speed + self.faster_back(at, &bar);
+        }
     }
 }

@@ -30,6 +30,10 @@ pub enum BearingParameter {
     Tilt(usize),
     /// A coefficient of a shape: which shape, which coefficient.
     Shape(usize, usize),
+    /// Factor on the load of combustion (or on a load given as a table).
+    LoadFactor,
+    /// Speed of the crankshaft, rad/s.
+    Speed,
 }
 
 /// What a bearing reports at every instant, in this order.
@@ -120,6 +124,10 @@ pub struct BearingSetup {
     pub film: Arc<dyn FilmModel>,
     /// Load over the cycle.
     pub load: Arc<BearingLoad>,
+    /// The load where nothing is fired; needed where the load factor is a parameter.
+    pub idle: Option<Arc<BearingLoad>>,
+    /// Factor on the difference between the two.
+    pub load_factor: f64,
     /// Speed of the crankshaft, rad/s.
     pub speed_rad_s: f64,
     /// Viscosity of the oil over temperature.
@@ -164,6 +172,8 @@ impl BearingSetup {
         Self {
             film,
             load,
+            idle: None,
+            load_factor: 1.0,
             speed_rad_s: 100.0,
             viscosity,
             film_rise_k: 0.0,
@@ -206,6 +216,8 @@ impl BearingSetup {
                 Tilt::Free => 0.0,
             },
             BearingParameter::Shape(shape, k) => self.shapes[shape].profile.coefficients()[k],
+            BearingParameter::LoadFactor => self.load_factor,
+            BearingParameter::Speed => self.speed_rad_s,
         }
     }
 
@@ -233,6 +245,8 @@ impl BearingSetup {
                     let profile = &self.shapes[shape].profile;
                     coefficients[shape].get_or_insert_with(|| profile.coefficients())[k] = value;
                 }
+                BearingParameter::LoadFactor => setup.load_factor = value,
+                BearingParameter::Speed => setup.speed_rad_s = value,
             }
         }
         for (shape, new) in setup.shapes.iter_mut().zip(coefficients) {
@@ -253,6 +267,7 @@ impl BearingSetup {
             ("width", self.width_m),
             ("diameter", self.diameter_m),
             ("diametral clearance", self.diametral_clearance_m),
+            ("speed", self.speed_rad_s),
             ("inlet temperature", self.inlet_temperature_k),
             ("film temperature", self.film_temperature_k()),
         ];

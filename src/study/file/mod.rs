@@ -46,9 +46,9 @@ pub use oil::{
     ViscosityPointFile,
 };
 pub use search::{
-    AggregateName, ChoiceFile, ConstraintFile, GradientFile, LinearConstraintFile, ObjectiveFile,
-    OperatingPointFile, OptimiserFile, OptionFile, ParameterFile, ParetoFile, RobustFile, RunningInFile,
-    RunningInGoalName, StageFile, TermFile, ToleranceFile,
+    AccelerationName, AggregateName, ChoiceFile, ConstraintFile, GradientFile, LinearConstraintFile,
+    ObjectiveFile, OperatingPointFile, OptimiserFile, OptionFile, ParameterFile, ParetoFile, RobustFile,
+    RunningInFile, RunningInGoalName, StageFile, TermFile, ToleranceFile,
 };
 pub use surface::{ContactIntegralName, ContactName, RoughnessFile, ShapeFile, ShapeKind, SurfaceName};
 

@@ -4,7 +4,7 @@ use super::QuantityText;
 use crate::gradient::EngineName;
 use crate::optimise::Method;
 use crate::study::{Given, QuantityName};
-use crate::units::{Duration, Length, Rotation, Temperature, Volume};
+use crate::units::{Duration, Heat, Length, Power, Rotation, Temperature, Volume};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -163,10 +163,22 @@ section! {
 words! {
     /// What a running-in design minimises.
     RunningInGoalName {
-        /// The friction loss meant over the programme: the energy lost.
+        /// The friction loss meant over the programme.
         MeanLoss,
+        /// The energy lost over the programme, where its durations are design parameters.
+        EnergyLost,
         /// The friction loss in the end, at the last stage.
         FinalLoss,
+    }
+}
+
+words! {
+    /// How a march through running-in saves cycles.
+    AccelerationName {
+        /// Predictions from a basis of earlier cycles by proper orthogonal decomposition.
+        Pod,
+        /// None: every cycle is computed.
+        None,
     }
 }
 
@@ -175,12 +187,26 @@ section! {
     RunningInFile {
         /// The programme.
         stages: Vec<Given<StageFile>>,
-        /// Searches a running-in design: "mean-loss" (over the programme) or "final-loss" is minimised instead of the loss of new surfaces at the operating points, where the limits hold all the same. Default: the design is searched without regard to wear and run in afterwards.
+        /// Searches a running-in design: "mean-loss" (over the programme), "energy-lost" or "final-loss" is minimised instead of the loss of new surfaces at the operating points, where the limits hold all the same. Default: the design is searched without regard to wear and run in afterwards.
         minimise: RunningInGoalName,
         /// Largest wear depth of any shell. For a running-in design.
         max_wear_depth: Length,
         /// Largest volume worn off any bearing. For a running-in design.
         max_wear_volume: Volume,
+        /// Most energy lost to friction over the programme by any bearing. For a running-in design.
+        max_energy_lost: Heat,
+        /// Largest friction loss of any bearing in the end of the programme. For a running-in design.
+        max_final_loss: Power,
+        /// Longest time constant of any bearing's loss in the last stage. For a running-in design.
+        max_time_to_run_in: Duration,
+        /// Whether the search of a running-in design begins with a cheap approximation of the march (P_alpha). Default true.
+        approximate_first: bool,
+        /// A stage ends before its time when a block changes the friction loss by less than this share, and the surfaces by less than settled_wear_depth. Default: no stage does.
+        settled_loss_change: f64,
+        /// See settled_loss_change.
+        settled_wear_depth: Length,
+        /// How cycles are saved where the found design is run in: "pod" predicts them from those before wherever the error it makes is within the tolerance, "none" computes all. Default "pod".
+        acceleration: AccelerationName,
         /// Error of the wear depth that one block of the march may have. Default "0.02 um".
         wear_depth_tolerance: Length,
         /// Share of the wear that the journal takes. Default 0.
