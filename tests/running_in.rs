@@ -5,7 +5,7 @@ use stribeck::cranktrain::BearingOutput;
 use stribeck::gradient::EngineName;
 use stribeck::orbit::OrbitOptions;
 use stribeck::run::Cancel;
-use stribeck::running_in::{March, MarchOptions, RunningInQuantity, Stage, march, replay};
+use stribeck::running_in::{March, MarchOptions, RunningInQuantity, Stage, march, march_predicted, replay};
 use stribeck::study::{Study, plan};
 
 /// Archard's coefficient of the tests, m3/(N m): a hundred times that of mild wear, so that an hour suffices.
@@ -52,12 +52,13 @@ fn a_bearing_that_does_not_touch_does_not_wear_at_all() {
     let (stage, orbit) = stage(&study, 3600.0);
     let model = stage.model.clone();
     let found = run(&[stage], &options(orbit));
-    assert!(found.worn_m.shell.iter().all(|w| *w == 0.0));
+    assert!(found.course.worn_m.shell.iter().all(|w| *w == 0.0));
     assert_eq!(found.blocks.len(), 1, "nothing to resolve");
-    assert_eq!(RunningInQuantity::WearVolume.value(&found, &model), 0.0);
-    let (first, last) = found.losses();
+    assert_eq!(RunningInQuantity::WearVolume.value(&found.course, &model), 0.0);
+    let (first, last) = found.course.losses();
     assert!(
-        (found.energy_j - 3600.0 * first).abs() < 1e-6 * found.energy_j && (first / last - 1.0).abs() < 1e-9
+        (found.course.energy_j - 3600.0 * first).abs() < 1e-6 * found.course.energy_j
+            && (first / last - 1.0).abs() < 1e-9
     );
 }
 
@@ -68,19 +69,20 @@ fn an_edge_wears_until_it_touches_less_and_volume_is_what_archard_says() {
     let (model, options) = (stage.model.clone(), options(orbit));
     let found = run(&[stage], &options);
     let shares: Vec<f64> = found.blocks.iter().map(|b| b.rates[0].contact_share()).collect();
-    println!("{} blocks, {} refused, contact share {shares:.4?}", found.blocks.len(), found.refused);
-    assert!(shares[0] > 0.01 && found.last.contact_share() < 0.5 * shares[0]);
+    println!("{} blocks, {} refused, contact share {shares:.4?}", found.blocks.len(), found.course.refused);
+    assert!(shares[0] > 0.01 && found.course.last.contact_share() < 0.5 * shares[0]);
     assert!(found.blocks.iter().all(|b| b.error_m <= options.tolerance_m));
     // The edge that the journal leans on, and only that one.
     let mesh = model.film().mesh().unwrap();
-    let row = |j: usize| (0..mesh.n_phi).map(|i| found.worn_m.shell[i * mesh.n_z + j]).fold(0.0, f64::max);
+    let row =
+        |j: usize| (0..mesh.n_phi).map(|i| found.course.worn_m.shell[i * mesh.n_z + j]).fold(0.0, f64::max);
     let (one, other) = (row(0), row(mesh.n_z - 1));
     assert!(one.max(other) > 1e-7 && one.min(other) < 0.2 * one.max(other), "{one} {other}");
     // Volume of every block: K / H times load times way, from the friction of contact.
     let friction = 0.08;
     let area = std::f64::consts::PI * 0.125 * 0.060 / mesh.cells() as f64;
     for (k, block) in found.blocks.iter().enumerate() {
-        let after = found.blocks.get(k + 1).map_or(&found.worn_m, |next| &next.worn_m);
+        let after = found.blocks.get(k + 1).map_or(&found.course.worn_m, |next| &next.worn_m);
         let depth: f64 = after.shell.iter().zip(&block.worn_m.shell).map(|(a, b)| a - b).sum();
         let way: f64 = block.rates.iter().map(|r| r.mean(BearingOutput::ContactLoss)).sum::<f64>() / friction;
         let archard = WEAR * 0.5 * block.length_s * way;
@@ -97,13 +99,46 @@ fn blocks_converge_with_second_order() {
     let with = |n: usize| {
         let shares = vec![vec![1.0 / n as f64; n]];
         let found = replay(&stages, &shares, &options, None, &Cancel::default()).unwrap();
-        [RunningInQuantity::EnergyLost, RunningInQuantity::WearVolume].map(|q| q.value(&found, &model))
+        [RunningInQuantity::EnergyLost, RunningInQuantity::WearVolume].map(|q| q.value(&found.course, &model))
     };
     let [coarse, middle, fine] = [6, 12, 24].map(with);
     for k in 0..2 {
         let order = ((coarse[k] - middle[k]) / (middle[k] - fine[k])).abs().log2();
         println!("quantity {k}: order {order:.2}");
         assert!(order > 1.5, "{order}");
+    }
+}
+
+/// Largest difference of two worn shells over the largest depth of the second.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let off = a.iter().zip(b).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+    off / b.iter().copied().fold(0.0, f64::max)
+}
+
+#[test]
+fn predicted_cycles_lead_to_the_same_surfaces_with_fewer_solved_ones() {
+    let study = leaning(&[]);
+    for (duration_s, tolerance_m) in [(3600.0, 2e-8), (14400.0, 2e-8)] {
+        let (stage, orbit) = stage(&study, duration_s);
+        let options = MarchOptions { tolerance_m, ..options(orbit) };
+        let stages = [stage];
+        let full = run(&stages, &options).course;
+        let found = march_predicted(&stages, &options, &Cancel::default(), &mut |_| {}).unwrap();
+        let course = &found.course;
+        let [solved, of] = [course, &full].map(|c| c.cost.simulations);
+        let [work, of_work] = [course, &full].map(|c| c.cost.factorisations);
+        let miss = apart(&course.worn_m.shell, &full.worn_m.shell);
+        let energy = course.energy_j / full.energy_j - 1.0;
+        println!(
+            "{duration_s} s, {tolerance_m:.0e} m: {solved} of {of} cycles solved ({} windows, {} refused), {:.2} of the \
+             factorisations, shells {miss:.1e} apart, energy {energy:.1e}, largest error {:.1e} m",
+            found.windows,
+            course.refused,
+            work as f64 / of_work as f64,
+            found.error_m
+        );
+        assert!(miss < 0.01 && energy.abs() < 1e-3 && found.error_m <= tolerance_m);
+        assert!(solved as f64 <= 0.65 * of as f64 && work as f64 <= 0.65 * of_work as f64, "{solved} {of}");
     }
 }
 

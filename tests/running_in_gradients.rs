@@ -80,11 +80,11 @@ impl Programme {
 
     /// What settling leaves of a quantity, over the step of a difference: it counts where little is asked of a large value.
     fn noise(&self, quantity: usize, variable: usize) -> f64 {
-        let (first, last) = self.found.losses();
+        let (first, last) = self.found.course.losses();
         let left = match ALL[quantity] {
-            RunningInQuantity::TimeToRunIn => 1e-12 * self.found.energy_j / (first - last).abs(),
+            RunningInQuantity::TimeToRunIn => 1e-12 * self.found.course.energy_j / (first - last).abs(),
             of if self.names[variable].ends_with("duration") => {
-                1e-10 * of.value(&self.found, &self.stages[1].model).abs()
+                1e-10 * of.value(&self.found.course, &self.stages[1].model).abs()
             }
             _ => 0.0,
         };

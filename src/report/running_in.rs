@@ -95,8 +95,12 @@ pub struct BearingRunningIn {
     pub operating_points: Vec<BeforeAfter>,
     /// The programme in blocks: what stood at the beginning of each, and at the end of each stage.
     pub blocks: Vec<RunningInBlock>,
-    /// Blocks of the march.
+    /// Blocks of the march, or windows if cycles were predicted.
     pub count: usize,
+    /// Cycles that were predicted instead of solved; none if the march predicts none.
+    pub predicted_cycles: Option<usize>,
+    /// Largest error of the depth that a block or window was let pass with, um.
+    pub largest_error_um: f64,
     /// Blocks that were tried and found too long.
     pub refused_blocks: usize,
     /// Cycles simulated.

@@ -35,7 +35,7 @@ pub(super) fn march_adjoint(
     let mut found = RunningInGradient { rows: Vec::new(), cost: Cost::default() };
     let area = area_slope(last, variable_count(stages));
     for quantity in of {
-        let worth = quantity.worth(march, &last.model);
+        let worth = quantity.worth(&march.course, &last.model);
         let row = area.iter().map(|a| worth.area * a).collect();
         let mut back = Back { stages, options, cancel, row, near: None, cost: Cost::default() };
         back.run(march, &worth)?;
@@ -60,8 +60,8 @@ impl Back<'_> {
     fn run(&mut self, march: &March, worth: &Worth) -> Result<(), MarchError> {
         let mut later = worth.worn.clone();
         if worth.last_loss != 0.0 {
-            let at = (self.stages.len() - 1, &march.worn_m);
-            let by = self.cycle(at, &march.last, worth.last_loss, &SurfaceField::default())?;
+            let at = (self.stages.len() - 1, &march.course.worn_m);
+            let by = self.cycle(at, &march.course.last, worth.last_loss, &SurfaceField::default())?;
             later = moved(&later, 1.0, &by);
         }
         for (k, block) in march.blocks.iter().enumerate().rev() {

@@ -64,11 +64,11 @@ fn differences(
     let mut found = RunningInGradient { rows: vec![vec![0.0; variables]; of.len()], cost: Cost::default() };
     let values = |stages: &[Stage], march: &March| -> Vec<f64> {
         let model = stages.last().map(|s| &s.model);
-        model.map_or_else(Vec::new, |model| of.iter().map(|q| q.value(march, model)).collect())
+        model.map_or_else(Vec::new, |model| of.iter().map(|q| q.value(&march.course, model)).collect())
     };
     let here = if sides.0 * sides.1 == 0.0 {
         let sharp = replay(stages, &shares, options, Some(march), cancel)?;
-        found.cost += sharp.cost;
+        found.cost += sharp.course.cost;
         values(stages, &sharp)
     } else {
         Vec::new()
@@ -85,7 +85,7 @@ fn differences(
                 stages.iter().map(|s| s.moved(v, sign * step)).collect();
             let moved = moved?;
             let there = replay(&moved, &shares, options, Some(march), cancel)?;
-            Ok((values(&moved, &there), there.cost))
+            Ok((values(&moved, &there), there.course.cost))
         };
         let ((low, down), (high, up)) = (side(sides.0)?, side(sides.1)?);
         let slope = |(high, low): (&f64, &f64)| (high - low) / ((sides.1 - sides.0) * step);

@@ -50,11 +50,24 @@ pub struct End {
     pub rate: Arc<Rate>,
 }
 
-/// A programme that was gone through.
+/// A moment of a programme whose cycle was solved.
 #[derive(Debug, Clone)]
-pub struct March {
-    /// The blocks.
-    pub blocks: Vec<Block>,
+pub struct Moment {
+    /// Stage.
+    pub stage: usize,
+    /// When, s after the start of the programme.
+    pub at_s: f64,
+    /// The surfaces then.
+    pub worn_m: SurfaceField,
+    /// The cycle with them, without its states.
+    pub rate: Arc<Rate>,
+}
+
+/// How a programme went.
+#[derive(Debug, Clone)]
+pub struct Course {
+    /// Moments in their order, the beginning of every stage among them; their ends stand for themselves.
+    pub moments: Vec<Moment>,
     /// Surfaces in the end.
     pub worn_m: SurfaceField,
     /// The cycle of the last stage with them.
@@ -63,12 +76,27 @@ pub struct March {
     pub ends: Vec<End>,
     /// Energy lost to friction, J.
     pub energy_j: f64,
+    /// Its part in the last stage, J.
+    pub last_energy_j: f64,
+    /// Length of the last stage, s.
+    pub last_duration_s: f64,
+    /// Mean friction loss at the beginning of the last stage, W.
+    pub first_loss_w: f64,
     /// Length of the programme, s; less than was asked for if stages had nothing more to tell.
     pub duration_s: f64,
     /// Blocks that were tried and found too long.
     pub refused: usize,
     /// Work done.
     pub cost: Cost,
+}
+
+/// A programme that was gone through block by block.
+#[derive(Debug, Clone)]
+pub struct March {
+    /// How it went.
+    pub course: Course,
+    /// The blocks.
+    pub blocks: Vec<Block>,
 }
 
 /// Length that an error allows, given the length that made it.
@@ -94,7 +122,7 @@ pub fn march(
     let mut length_s = None;
     for (stage, at) in stages.iter().enumerate() {
         let mut gone_s = 0.0;
-        let mut first = walk.rate(stage, None)?;
+        let mut first = walk.begin(stage)?;
         while gone_s < at.duration_s * (1.0 - SHORTEST) {
             let rest_s = at.duration_s - gone_s;
             let guess = first_guess_s(&options.depths(&first), options.tolerance_m);
@@ -149,7 +177,7 @@ pub fn replay(
 ) -> Result<March, MarchError> {
     let mut walk = Walk::new(stages, options, like, cancel)?;
     for (stage, (at, shares)) in stages.iter().zip(shares).enumerate() {
-        let mut first = walk.rate(stage, None)?;
+        let mut first = walk.begin(stage)?;
         for share in shares {
             let block = walk.attempt(stage, share * at.duration_s, &first)?;
             first = walk.accept(block, &mut |_| {})?;

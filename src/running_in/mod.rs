@@ -15,9 +15,11 @@
 //! Deliberately not here: study files, words, optimisation; roughness that changes with wear.
 
 mod adjoint;
+mod basis;
 mod field;
 mod gradient;
 mod march;
+mod predicted;
 mod quantity;
 mod rate;
 mod stage;
@@ -25,7 +27,8 @@ mod tangent;
 mod walk;
 
 pub use gradient::{MarchEngine, RunningInGradient, march_gradient};
-pub use march::{Block, End, March, march, replay};
+pub use march::{Block, Course, End, March, Moment, march, replay};
+pub use predicted::{PredictedMarch, march_predicted};
 pub use quantity::{RunningInQuantity, Worth, worn_volume_m3};
 pub use rate::{Rate, settled_with_wear};
 pub use stage::{MarchError, MarchOptions, Settled, Stage};

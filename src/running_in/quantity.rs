@@ -1,6 +1,6 @@
 //! Numbers from a running-in, with what each part of the march is worth to them.
 
-use super::march::{Block, March};
+use super::march::Course;
 use super::stage::Stage;
 use crate::cranktrain::{BearingParameter, JournalBearing, SurfaceField};
 use crate::film::Mesh;
@@ -77,54 +77,54 @@ pub(super) fn area_slope(last: &Stage, variables: usize) -> Vec<f64> {
 
 impl RunningInQuantity {
     /// Its value.
-    pub fn value(self, march: &March, model: &JournalBearing) -> f64 {
-        let (first, last) = march.losses();
+    pub fn value(self, course: &Course, model: &JournalBearing) -> f64 {
+        let (first, last) = course.losses();
         match self {
-            Self::EnergyLost => march.energy_j,
-            Self::MeanLoss => march.energy_j / march.duration_s,
+            Self::EnergyLost => course.energy_j,
+            Self::MeanLoss => course.energy_j / course.duration_s,
             Self::FinalLoss => last,
-            Self::WearVolume => worn_volume_m3(&march.worn_m, model),
+            Self::WearVolume => worn_volume_m3(&course.worn_m, model),
             Self::MaxDepth(sharpness) => {
-                PowerMean::maximum(sharpness).of(march.worn_m.shell.iter().copied()).value()
+                PowerMean::maximum(sharpness).of(course.worn_m.shell.iter().copied()).value()
             }
             Self::TimeToRunIn if first == last => 0.0,
             Self::TimeToRunIn => {
-                let (energy_j, duration_s) = march.last_stage();
+                let (energy_j, duration_s) = (course.last_energy_j, course.last_duration_s);
                 (energy_j - last * duration_s) / (first - last)
             }
         }
     }
 
     /// Its derivatives by what the march ends with.
-    pub fn worth(self, march: &March, model: &JournalBearing) -> Worth {
-        let (first, last) = march.losses();
+    pub fn worth(self, course: &Course, model: &JournalBearing) -> Worth {
+        let (first, last) = course.losses();
         let zero = || SurfaceField {
-            shell: vec![0.0; march.worn_m.shell.len()],
-            journal: vec![0.0; march.worn_m.journal.len()],
+            shell: vec![0.0; course.worn_m.shell.len()],
+            journal: vec![0.0; course.worn_m.journal.len()],
         };
-        let t = march.duration_s;
+        let t = course.duration_s;
         let mut worth = Worth { worn: zero(), ..Worth::default() };
         match self {
             Self::EnergyLost => worth.energy = 1.0,
             Self::MeanLoss => {
                 worth.energy = 1.0 / t;
-                worth.duration = -march.energy_j / (t * t);
+                worth.duration = -course.energy_j / (t * t);
             }
             Self::FinalLoss => worth.last_loss = 1.0,
             Self::WearVolume => {
                 worth.worn.shell.fill(cell_area_m2(model));
                 worth.worn.journal.fill(cell_area_m2(model));
-                worth.area = depth_sum_m(&march.worn_m);
+                worth.area = depth_sum_m(&course.worn_m);
             }
             Self::MaxDepth(sharpness) => {
-                let mean = PowerMean::maximum(sharpness).of(march.worn_m.shell.iter().copied());
-                let slopes = march.worn_m.shell.iter().map(|w| mean.derivative(*w));
+                let mean = PowerMean::maximum(sharpness).of(course.worn_m.shell.iter().copied());
+                let slopes = course.worn_m.shell.iter().map(|w| mean.derivative(*w));
                 worth.worn.shell = slopes.collect();
             }
             Self::TimeToRunIn if first == last => {}
             Self::TimeToRunIn => {
-                let (fall, value) = (first - last, self.value(march, model));
-                let (_, duration_s) = march.last_stage();
+                let (fall, value) = (first - last, self.value(course, model));
+                let (_, duration_s) = (course.last_energy_j, course.last_duration_s);
                 worth.last_energy = 1.0 / fall;
                 worth.last_loss = (value - duration_s) / fall;
                 worth.first_loss = -value / fall;
@@ -135,22 +135,9 @@ impl RunningInQuantity {
     }
 }
 
-impl March {
+impl Course {
     /// Mean friction loss at the beginning of the last stage and in its end, W.
     pub fn losses(&self) -> (f64, f64) {
-        let last = self.last.loss_w();
-        (self.last_blocks().next().map_or(last, |b| b.rates[0].loss_w()), last)
-    }
-
-    /// Energy lost in the last stage, J, and its length, s.
-    fn last_stage(&self) -> (f64, f64) {
-        let energy = |b: &Block| 0.5 * b.length_s * (b.rates[0].loss_w() + b.rates[1].loss_w());
-        self.last_blocks().fold((0.0, 0.0), |(e, t), b| (e + energy(b), t + b.length_s))
-    }
-
-    /// Blocks of the last stage.
-    fn last_blocks(&self) -> impl Iterator<Item = &Block> {
-        let last = self.blocks.last().map_or(0, |b| b.stage);
-        self.blocks.iter().filter(move |b| b.stage == last)
+        (self.first_loss_w, self.last.loss_w())
     }
 }

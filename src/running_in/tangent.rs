@@ -40,10 +40,10 @@ pub(super) fn march_tangent(
     let last = stages.last().ok_or_else(|| MarchError::Parameters("no stages".to_owned()))?;
     let n = variable_count(stages);
     let mut forward = Forward { stages, options, cancel, n, cost: Cost::default() };
-    let worths: Vec<Worth> = of.iter().map(|q| q.worth(march, &last.model)).collect();
+    let worths: Vec<Worth> = of.iter().map(|q| q.worth(&march.course, &last.model)).collect();
     let area = area_slope(last, n);
     let mut rows: Vec<Vec<f64>> = worths.iter().map(|w| area.iter().map(|a| w.area * a).collect()).collect();
-    let mut surfaces = vec![zeros(&march.worn_m); n];
+    let mut surfaces = vec![zeros(&march.course.worn_m); n];
     let mut near = None;
     for (k, block) in march.blocks.iter().enumerate() {
         let (h, in_last) = (block.length_s, block.stage + 1 == stages.len());
@@ -68,7 +68,12 @@ pub(super) fn march_tangent(
         }
     }
     if worths.iter().any(|w| w.last_loss != 0.0) {
-        let end = forward.cycle((stages.len() - 1, &march.worn_m), &march.last, &surfaces, &mut near)?;
+        let end = forward.cycle(
+            (stages.len() - 1, &march.course.worn_m),
+            &march.course.last,
+            &surfaces,
+            &mut near,
+        )?;
         for (row, worth) in rows.iter_mut().zip(&worths) {
             row.iter_mut().zip(&end.loss_w).for_each(|(g, p)| *g += worth.last_loss * p);
         }

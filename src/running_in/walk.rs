@@ -1,10 +1,11 @@
 //! A march on its way: surfaces, time, energy, blocks behind it, and how one block is attempted and accepted.
 
 use super::field::{largest, moved};
-use super::march::{Block, End, March};
+use super::march::{Block, Course, End, March, Moment};
 use super::rate::{Rate, settled_with_wear};
 use super::stage::{MarchError, MarchOptions, Stage};
 use crate::cranktrain::SurfaceField;
+use crate::orbit::Orbit;
 use crate::run::{Cancel, Cost};
 use std::sync::Arc;
 
@@ -16,7 +17,10 @@ pub(super) struct Walk<'a> {
     pub from_s: f64,
     pub energy_j: f64,
     pub blocks: Vec<Block>,
+    moments: Vec<Moment>,
     ends: Vec<End>,
+    /// Time, energy and loss at the beginning of the stage.
+    began: (f64, f64, f64),
     /// The cycle settled last: where the next one starts.
     near: Option<Arc<Rate>>,
     /// The march of a similar design: where each cycle starts instead, from its fellow there.
@@ -47,8 +51,10 @@ impl<'a> Walk<'a> {
             from_s: 0.0,
             energy_j: 0.0,
             blocks: Vec::new(),
+            moments: Vec::new(),
             ends: Vec::new(),
-            near: like.map(|m| m.last.clone()),
+            began: (0.0, 0.0, 0.0),
+            near: like.map(|m| m.course.last.clone()),
             like,
             refused: 0,
             kept_bytes: 0,
@@ -60,17 +66,41 @@ impl<'a> Walk<'a> {
     fn fellow(&self, stage: usize, reached: bool) -> Option<&Arc<Rate>> {
         let like = self.like?;
         let block = like.blocks.get(self.blocks.len()).filter(|b| b.stage == stage);
-        let end = || like.ends.get(stage).map(|end| &end.rate);
+        let end = || like.course.ends.get(stage).map(|end| &end.rate);
         let fellow = block.map(|b| &b.rates[usize::from(reached)]).or_else(end);
         fellow.filter(|rate| rate.state_bytes() > 0)
     }
 
+    /// The cycle at the beginning of a stage.
+    pub fn begin(&mut self, stage: usize) -> Result<Arc<Rate>, MarchError> {
+        let rate = self.rate(stage, None)?;
+        self.began = (self.from_s, self.energy_j, rate.loss_w());
+        self.remember(stage, &rate);
+        Ok(rate)
+    }
+
+    /// Notes the moment.
+    fn remember(&mut self, stage: usize, rate: &Rate) {
+        let rate = Arc::new(rate.without_states());
+        self.moments.push(Moment { stage, at_s: self.from_s, worn_m: self.worn_m.clone(), rate });
+    }
+
     /// The cycle of a stage with surfaces of its own, or with those of the moment.
     pub fn rate(&mut self, stage: usize, worn_m: Option<&SurfaceField>) -> Result<Arc<Rate>, MarchError> {
+        self.rate_from(stage, worn_m, None)
+    }
+
+    /// The same from a start of its own.
+    pub fn rate_from(
+        &mut self,
+        stage: usize,
+        worn_m: Option<&SurfaceField>,
+        start: Option<&Orbit>,
+    ) -> Result<Arc<Rate>, MarchError> {
         let reached = worn_m.is_some();
         self.cancel.check().map_err(|_| MarchError::Cancelled)?;
         let (model, worn_m) = (&self.stages[stage].model, worn_m.unwrap_or(&self.worn_m));
-        let near = self.fellow(stage, reached).or(self.near.as_ref()).map(|r| &r.orbit);
+        let near = start.or_else(|| self.fellow(stage, reached).or(self.near.as_ref()).map(|r| &r.orbit));
         let found = Arc::new(settled_with_wear(model, worn_m, &self.options.orbit, near, self.cancel)?);
         self.cost += found.orbit.cost;
         self.near = Some(found.clone());
@@ -106,7 +136,28 @@ impl<'a> Walk<'a> {
         let stage = block.stage;
         self.keep(&mut block);
         self.blocks.push(block);
-        self.rate(stage, None)
+        let end = self.rate(stage, None)?;
+        self.remember(stage, &end);
+        Ok(end)
+    }
+
+    /// Goes over a stretch whose end was found by prediction and checked by a solved cycle.
+    pub fn pass(
+        &mut self,
+        stage: usize,
+        worn_m: SurfaceField,
+        energy_j: f64,
+        length_s: f64,
+        checked: &Rate,
+    ) -> Result<(), MarchError> {
+        if self.moments.len() > self.options.max_blocks {
+            return Err(MarchError::TooManyBlocks(self.options.max_blocks));
+        }
+        self.worn_m = worn_m;
+        self.energy_j += energy_j;
+        self.from_s += length_s;
+        self.remember(stage, checked);
+        Ok(())
     }
 
     /// Drops the states of the cycles of a block if they do not fit.
@@ -120,15 +171,29 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The end of a stage.
+    /// The end of a stage, which stands for the last moment in it.
     pub fn end(&mut self, rate: Arc<Rate>) {
+        self.moments.pop();
         self.ends.push(End { at_s: self.from_s, worn_m: self.worn_m.clone(), rate });
     }
 
     pub fn finish(self) -> Result<March, MarchError> {
-        let Self { blocks, ends, worn_m, energy_j, from_s, refused, cost, .. } = self;
         let empty = || MarchError::Parameters("an empty programme".to_owned());
-        let last = ends.last().ok_or_else(empty)?.rate.clone();
-        Ok(March { blocks, worn_m, last, ends, energy_j, duration_s: from_s, refused, cost })
+        let last = self.ends.last().ok_or_else(empty)?.rate.clone();
+        let (began_s, began_j, first_loss_w) = self.began;
+        let course = Course {
+            moments: self.moments,
+            worn_m: self.worn_m,
+            last,
+            ends: self.ends,
+            energy_j: self.energy_j,
+            last_energy_j: self.energy_j - began_j,
+            last_duration_s: self.from_s - began_s,
+            first_loss_w,
+            duration_s: self.from_s,
+            refused: self.refused,
+            cost: self.cost,
+        };
+        Ok(March { course, blocks: self.blocks })
     }
 }

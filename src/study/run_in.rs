@@ -15,7 +15,8 @@ use crate::report::{
 };
 use crate::run::{Event, RunContext};
 use crate::running_in::{
-    Block, March, MarchError, Rate, RunningInQuantity, Stage, march, settled_with_wear, worn_volume_m3,
+    Block, Course, MarchError, Rate, RunningInQuantity, Stage, march, march_predicted, settled_with_wear,
+    worn_volume_m3,
 };
 use crate::units::tidy;
 
@@ -98,15 +99,31 @@ fn bearing(
         Err(e) => return BearingRunningIn { failure: Some(e.to_string()), ..found },
     };
     let total_s: f64 = stages.iter().map(|s| s.duration_s).sum();
-    let mut tell = |block: &Block| {
-        let done = crate::report::short((1e3 * (block.from_s + block.length_s) / total_s).round() / 10.0);
+    let mut tell = |at_s: f64| {
+        let done = crate::report::short((1e3 * at_s / total_s).round() / 10.0);
         let name = format!("running in {}: {done} % of the programme", own.name);
         context.progress.tell(&Event::Stage { name });
     };
-    match march(&stages, &options, context.cancel, &mut tell) {
-        Ok(march) => {
-            fill(&mut found, wanted, &stages, &march);
-            found.operating_points = before_after(study, plan, (bearing, x), &march, context);
+    let went = match wanted.predicted {
+        true => march_predicted(&stages, &options, context.cancel, &mut tell).map(|march| {
+            found.count = march.windows;
+            found.predicted_cycles = Some(march.predicted);
+            found.largest_error_um = march.error_m * 1e6;
+            march.course
+        }),
+        false => {
+            let mut tell = |block: &Block| tell(block.from_s + block.length_s);
+            march(&stages, &options, context.cancel, &mut tell).map(|march| {
+                found.count = march.blocks.len();
+                found.largest_error_um = march.blocks.iter().fold(0.0, |m, b| b.error_m.max(m)) * 1e6;
+                march.course
+            })
+        }
+    };
+    match went {
+        Ok(course) => {
+            fill(&mut found, wanted, &stages, &course);
+            found.operating_points = before_after(study, plan, (bearing, x), &course, context);
         }
         Err(MarchError::Orbit(e)) => {
             found.failure = Some(format!("a cycle with worn surfaces could not be simulated: {e}"));
@@ -122,21 +139,21 @@ fn whole_width(model: &JournalBearing, field: &[f64], scale: f64) -> Vec<Vec<f64
     model.film().mesh().map_or_else(Vec::new, |mesh| mesh.map(scaled))
 }
 
-fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], march: &March) {
+fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], course: &Course) {
     let Some(Stage { model, .. }) = stages.last() else { return };
-    let value = |of: RunningInQuantity| of.value(march, model);
-    let (first, last) = march.losses();
+    let value = |of: RunningInQuantity| of.value(course, model);
+    let (first, last) = course.losses();
     found.energy_lost_kj = value(RunningInQuantity::EnergyLost) * 1e-3;
     found.mean_loss_w = value(RunningInQuantity::MeanLoss);
     (found.first_loss_w, found.final_loss_w) = (first, last);
     found.wear_volume_mm3 = value(RunningInQuantity::WearVolume) * 1e9;
     let deepest = |field: &[f64]| field.iter().copied().fold(0.0, f64::max);
-    found.max_wear_depth_um = deepest(&march.worn_m.shell) * 1e6;
+    found.max_wear_depth_um = deepest(&course.worn_m.shell) * 1e6;
     found.time_to_run_in_h = (first > last).then(|| value(RunningInQuantity::TimeToRunIn) / HOUR_S);
-    found.wear_depth_um = whole_width(model, &march.worn_m.shell, 1e6);
-    found.journal_wear_depth_um = whole_width(model, &march.worn_m.journal, 1e6);
-    found.refused_blocks = march.refused;
-    found.simulations = march.cost.simulations;
+    found.wear_depth_um = whole_width(model, &course.worn_m.shell, 1e6);
+    found.journal_wear_depth_um = whole_width(model, &course.worn_m.journal, 1e6);
+    found.refused_blocks = course.refused;
+    found.simulations = course.cost.simulations;
     let row = |stage: usize, time_s: f64, worn: &SurfaceField, rate: &Rate| {
         let state = state(rate);
         RunningInBlock {
@@ -151,15 +168,14 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
             wear_volume_mm3: worn_volume_m3(worn, model) * 1e9,
         }
     };
-    for (k, end) in march.ends.iter().enumerate() {
-        let mine = march.blocks.iter().filter(|b| b.stage == k);
-        found.blocks.extend(mine.map(|b| row(k, b.from_s, &b.worn_m, &b.rates[0])));
+    for (k, end) in course.ends.iter().enumerate() {
+        let mine = course.moments.iter().filter(|m| m.stage == k);
+        found.blocks.extend(mine.map(|m| row(k, m.at_s, &m.worn_m, &m.rate)));
         found.blocks.push(row(k, end.at_s, &end.worn_m, &end.rate));
     }
-    let begins = march.blocks.iter().find(|b| b.stage + 1 == stages.len());
-    found.first_contact_share = begins.map_or(march.last.contact_share(), |b| b.rates[0].contact_share());
-    found.final_contact_share = march.last.contact_share();
-    found.count = march.blocks.len();
+    let begins = course.moments.iter().find(|m| m.stage + 1 == stages.len());
+    found.first_contact_share = begins.map_or(&course.last, |m| &m.rate).contact_share();
+    found.final_contact_share = course.last.contact_share();
     found.width_mm = model.setup().width_m * 1e3;
 }
 
@@ -178,7 +194,7 @@ fn before_after(
     study: &Study,
     plan: &Plan,
     (bearing, x): (usize, &[f64]),
-    march: &March,
+    course: &Course,
     context: RunContext<'_>,
 ) -> Vec<BeforeAfter> {
     let one = |point: &OperatingPoint| -> Option<BeforeAfter> {
@@ -189,7 +205,7 @@ fn before_after(
         // Zeros instead of nothing, so that both are judged by the same cells.
         let blank = SurfaceField { shell: model.blank_field().shell, journal: Vec::new() };
         let new = settled(&blank, None)?;
-        let run_in = settled(&march.worn_m, Some(&new.orbit));
+        let run_in = settled(&course.worn_m, Some(&new.orbit));
         Some(BeforeAfter {
             operating_point: point.name.clone(),
             new: state(&new),

@@ -102,7 +102,7 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
                 .map_err(|e| EvaluationError::Failed(e.to_string()))?;
             let found =
                 replay(&stages, &own.shares, &own.options, None, self.context.cancel).map_err(refused)?;
-            self.spend(found.cost);
+            self.spend(found.course.cost);
             Ok(Marched { stages, found })
         };
         let all: Result<Vec<Marched>, EvaluationError> = self.own.par_iter().map(one).collect();
@@ -126,8 +126,9 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
         values.objective = 0.0;
         for (own, Marched { stages, found, .. }) in self.own.iter().zip(&*self.marched(x)?) {
             let Some(Stage { model, .. }) = stages.last() else { continue };
-            values.objective += own.count * self.minimised().value(found, model);
-            let beyond = self.wanted.limits.iter().map(|l| l.quantity.value(found, model) / l.limit - 1.0);
+            values.objective += own.count * self.minimised().value(&found.course, model);
+            let beyond =
+                self.wanted.limits.iter().map(|l| l.quantity.value(&found.course, model) / l.limit - 1.0);
             values.inequalities.extend(beyond);
         }
         Ok(values)
