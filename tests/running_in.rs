@@ -191,21 +191,20 @@ fn a_study_runs_its_design_in_and_reports_it() {
     assert!(text("report.html").contains("Running-in of the design") && !text("report.html").contains("NaN"));
 }
 
-#[test]
-fn a_running_in_design_loses_less_within_its_wear_limits() {
-    let programme = "[running_in]\nminimise = \"mean-loss\"\nmax_wear_volume = \"0.1 mm3\"\nwear_depth_tolerance = \"0.5 um\"\n\
-        [[running_in.stages]]\nname = \"rated\"\nduration = \"1 h\"\nspeed = \"1500 rpm\"\n";
-    let with = format!("{programme}{COARSE}");
+/// The main study on a coarse mesh with a leaning journal and a programme of one hour; clearance, width and what is added vary.
+fn running_in_study(running_in: &str, more: &str, changes: &[(&str, &str)]) -> Study {
+    let stage = "[[running_in.stages]]\nname = \"rated\"\nduration = \"1 h\"\nspeed = \"1500 rpm\"\n";
+    let with = format!("[running_in]\n{running_in}{stage}{COARSE}");
     let rough = "journal = \"0.4 um\"\nwear_coefficient = \"3e-7 mm3/(N m)\"";
     let fixed = "name = \"big_end.diameter\"\nlower = \"112 mm\"\nupper = \"128 mm\"\n\n[[parameters]]\n";
     let cooled =
         "[[parameters]]\nname = \"oil.inlet_temperature\"\nlower = \"60 degC\"\nupper = \"90 degC\"\n\n";
-    let study = main_study(&[
-        ("[oil]", &with),
+    let mut all = vec![
+        ("[oil]", with.as_str()),
         ("kind = \"big-end\"", "kind = \"big-end\"\ntilt_x = \"0.012 deg\""),
         ("journal = \"0.2 um\"", rough),
         (fixed, ""),
-        (cooled, ""),
+        (cooled, more),
         (
             "quantity = \"max-film-pressure\"\nat_most = \"300 MPa\"",
             "quantity = \"contact-loss\"\nat_most = \"50 W\"",
@@ -214,8 +213,16 @@ fn a_running_in_design_loses_less_within_its_wear_limits() {
             "quantity = \"min-film-thickness\"\nat_least = \"3 um\"",
             "quantity = \"min-film-thickness\"\nat_least = \"0.2 um\"",
         ),
-    ]);
-    let report = quietly(|context| stribeck::study::run(&study, context)).report;
+    ];
+    all.extend_from_slice(changes);
+    main_study(&all)
+}
+
+#[test]
+fn a_running_in_design_loses_less_within_its_wear_limits() {
+    let asked =
+        "minimise = \"mean-loss\"\nmax_wear_volume = \"0.1 mm3\"\nwear_depth_tolerance = \"0.5 um\"\n";
+    let report = quietly(|context| stribeck::study::run(&running_in_study(asked, "", &[]), context)).report;
     let running_in = report.running_in.as_ref().unwrap();
     println!("{:?} {:?} {:#?}", report.outcome, running_in.limits, report.design);
     assert_eq!(report.outcome.status, stribeck::optimise::Outcome::Converged);
@@ -223,7 +230,103 @@ fn a_running_in_design_loses_less_within_its_wear_limits() {
     assert!(limit.met && limit.active && limit.price_w_per_unit > 0.0, "{limit:?}");
     // What the run marched anew agrees with what the search saw in its own blocks.
     let (minimised, bearing) = (running_in.minimised.as_ref().unwrap(), &running_in.bearings[0]);
-    assert!((bearing.mean_loss_w / minimised.optimum_w - 1.0).abs() < 1e-3);
+    assert!((bearing.mean_loss_w / minimised.optimum - 1.0).abs() < 1e-3);
     assert!((bearing.wear_volume_mm3 / limit.value - 1.0).abs() < 0.1);
     assert!(report.objective.quantity.contains("running-in"));
+}
+
+#[test]
+fn the_programme_is_designed_with_the_bearing_and_the_approximation_leads_to_the_same_design() {
+    let more =
+        "[[parameters]]\nname = \"running_in.rated.duration\"\nlower = \"0.25 h\"\nupper = \"3 h\"\n\n";
+    let asked = |first: bool| {
+        format!(
+            "minimise = \"final-loss\"\nmax_energy_lost = \"4000 kJ\"\nwear_depth_tolerance = \"0.03 um\"\n\
+             approximate_first = {first}\n"
+        )
+    };
+    let run = |first| {
+        let fixed = "name = \"big_end.width\"\nlower = \"45 mm\"\nupper = \"65 mm\"\n\n[[parameters]]\n";
+        let coarser = ("steps_per_cycle = 240", "steps_per_cycle = 120");
+        let study = running_in_study(&asked(first), more, &[coarser, (fixed, "")]);
+        quietly(|context| stribeck::study::run(&study, context)).report
+    };
+    let (plain, approximated) = (run(false), run(true));
+    for report in [&plain, &approximated] {
+        let r = report.running_in.as_ref().unwrap();
+        println!("{:?} {:?} {:?} {:?}", report.outcome.status, r.minimised, r.approximation, r.limits);
+        println!("{:?} {:?}", report.design.iter().map(|d| d.value).collect::<Vec<_>>(), report.cost);
+        assert_eq!(report.outcome.status, stribeck::optimise::Outcome::Converged);
+        assert!(r.limits.iter().all(|l| l.met));
+    }
+    for (a, b) in plain.design.iter().zip(&approximated.design) {
+        assert!((a.value - b.value).abs() < 0.02 * (a.upper - a.lower), "{} {} {}", a.name, a.value, b.value);
+    }
+    let of = |report: &stribeck::report::Report| {
+        let r = report.running_in.as_ref().unwrap();
+        (r.minimised.clone().unwrap().optimum, r.approximation.clone())
+    };
+    let ((a, none), (b, some)) = (of(&plain), of(&approximated));
+    assert!((a / b - 1.0).abs() < 2e-3 && none.is_none(), "{a} {b}");
+    let some = some.unwrap();
+    assert!(2 * some.groups <= some.blocks && some.start_error_percent.abs() < 1.0);
+    assert!((some.alpha.iter().sum::<f64>() - 0.5).abs() < 1e-12, "half, for both ends of each group");
+}
+
+#[test]
+fn a_stage_ends_early_when_blocks_change_little() {
+    use stribeck::running_in::Settled;
+    let study = leaning(&[]);
+    let (stage, orbit) = stage(&study, 36000.0);
+    let settled = Some(Settled { loss_share_per_s: 1e-6, depth_m_per_s: 5e-11 });
+    let options = MarchOptions { settled, ..options(orbit) };
+    let stages = [stage];
+    let found = run(&stages, &options);
+    let predicted = march_predicted(&stages, &options, &Cancel::default(), &mut |_| {}).unwrap();
+    println!("{} s, {} s predicted", found.course.duration_s, predicted.course.duration_s);
+    for course in [&found.course, &predicted.course] {
+        assert!(course.duration_s < 36000.0 && course.duration_s > 600.0);
+        assert!((course.last_duration_s - course.duration_s).abs() < 1e-9);
+    }
+    // Frozen blocks repeat the shortened programme.
+    let again = replay(&stages, &found.shares(&stages), &options, None, &Cancel::default()).unwrap();
+    assert!((again.course.duration_s / found.course.duration_s - 1.0).abs() < 1e-12);
+    assert!((again.course.energy_j / found.course.energy_j - 1.0).abs() < 1e-9);
+}
+
+/// Takes what is saved, up to a number of times: what a process that is killed leaves behind.
+#[derive(Default)]
+struct Killed {
+    saved: std::sync::Mutex<std::collections::BTreeMap<String, Vec<u8>>>,
+    left: std::sync::atomic::AtomicI64,
+}
+
+impl stribeck::run::Store for Killed {
+    fn load(&self, name: &str) -> Option<Vec<u8>> {
+        self.saved.lock().unwrap().get(name).cloned()
+    }
+
+    fn save(&self, name: &str, what: &[u8]) {
+        if self.left.fetch_sub(1, std::sync::atomic::Ordering::Relaxed) > 0 {
+            self.saved.lock().unwrap().insert(name.to_owned(), what.to_vec());
+        }
+    }
+}
+
+#[test]
+fn a_running_in_design_goes_on_where_it_was_stopped_to_the_same_report() {
+    let asked =
+        "minimise = \"mean-loss\"\nmax_wear_volume = \"0.1 mm3\"\nwear_depth_tolerance = \"0.5 um\"\n";
+    let study = running_in_study(asked, "", &[("steps_per_cycle = 240", "steps_per_cycle = 120")]);
+    let run = |store: &Killed| {
+        let mut report = quietly(|context| stribeck::study::run_saved(&study, context, store)).report;
+        report.cost.seconds = 0.0;
+        report
+    };
+    let whole = run(&Killed::default());
+    let store = Killed { left: 7.into(), ..Killed::default() };
+    run(&store);
+    let names: Vec<String> = store.saved.lock().unwrap().keys().cloned().collect();
+    assert!(names.contains(&"search-marches-0".to_owned()), "{names:?}");
+    assert_eq!(serde_json::to_value(run(&store)).unwrap(), serde_json::to_value(&whole).unwrap());
 }

@@ -132,9 +132,23 @@ fn running_in(report: &Report) -> Option<String> {
     }
     let mut words = String::new();
     if let Some(m) = &r.minimised {
-        let (start, optimum, saving) = (short(m.start_w), short(m.optimum_w), short(m.saving_percent));
-        words +=
-            &format!("\n{}: {start} W at the start, {optimum} W at the design, {saving} % saved", m.quantity);
+        let (start, optimum, saving) = (short(m.start), short(m.optimum), short(m.saving_percent));
+        let (what, unit) = (&m.quantity, &m.unit);
+        words += &format!(
+            "\n{what}: {start} {unit} at the start, {optimum} {unit} at the design, {saving} % saved"
+        );
+    }
+    if let Some(a) = &r.approximation {
+        let design =
+            a.design_error_percent.map_or_else(String::new, |e| format!(", {} % at the design", short(e)));
+        words += &format!(
+            "\nbegun with {} of {} blocks (P_alpha): {} designs, {} cycles; it errs by {} % at the start{design}",
+            a.groups,
+            a.blocks,
+            a.iterations,
+            a.simulations,
+            short(a.start_error_percent)
+        );
     }
     for l in &r.limits {
         let state = match (l.met, l.active) {

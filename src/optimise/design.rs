@@ -17,7 +17,9 @@ use super::case::{Case, Evaluated, Limit};
 use super::memory::{CaseRows, CaseValues, Key, Memory, key};
 use super::{ConstrainedProblem, Curved, EvaluationError, LinearConstraint, ManyObjectives, Slopes, Values};
 use crate::dae::SensitiveDae;
-use crate::gradient::{GradientEngine, GradientError, GradientTable, HessianProduct, hessian_times};
+use crate::gradient::{
+    EngineName, GradientEngine, GradientError, GradientTable, HessianProduct, hessian_times,
+};
 use crate::orbit::{Orbit, OrbitError, settle};
 use crate::run::{Cost, Event, IterationEvent, RunContext};
 use rayon::prelude::*;
@@ -69,6 +71,11 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
     #[must_use]
     pub fn beside(self, values: Vec<f64>) -> Self {
         Self { beside: values, ..self }
+    }
+
+    /// The gradient engine.
+    pub fn engine_name(&self) -> EngineName {
+        self.engine.name()
     }
 
     /// Hands a snapshot to `save` whenever a design was accepted and something new is known.

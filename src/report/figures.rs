@@ -4,8 +4,7 @@ use super::html::units;
 use super::svg::{
     FOUND, LIMIT, SECOND, SKY, START, THIRD, axis, half, legend_below, over_cycle, render, styled, tight_axis,
 };
-use super::{BearingRunningIn, ParetoReport, RunningInBlock};
-use super::{CharacteristicColumn, Curves, Report};
+use super::{CharacteristicColumn, Curves, ParetoReport, Report};
 use kuva::prelude::*;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -132,43 +131,6 @@ pub fn front(p: &ParetoReport, name: &str) -> String {
     render(plots, scaled_up(scaled_across(layout, &across), &up), name)
 }
 
-/// Friction loss over a running-in programme.
-pub fn running_in_loss(b: &BearingRunningIn, name: &str) -> String {
-    over_programme(b, |m| m.loss_w, "mean friction loss [W]", name)
-}
-
-/// Share of contact in the loss over a running-in programme.
-pub fn running_in_share(b: &BearingRunningIn, name: &str) -> String {
-    over_programme(b, |m| 100.0 * m.contact_share, "contact share [%]", name)
-}
-
-/// Deepest wear over a running-in programme.
-pub fn running_in_depth(b: &BearingRunningIn, name: &str) -> String {
-    over_programme(b, |m| m.max_wear_depth_um, "largest wear depth [µm]", name)
-}
-
-/// A number of every block over time; where a stage ends it jumps.
-fn over_programme(
-    b: &BearingRunningIn,
-    of: impl Fn(&RunningInBlock) -> f64,
-    label: &str,
-    name: &str,
-) -> String {
-    let points: Vec<(f64, f64)> = b.blocks.iter().map(|m| (m.time_h, of(m))).collect();
-    let up: Vec<f64> = points.iter().map(|p| p.1).collect();
-    let plots: Vec<Plot> =
-        vec![LinePlot::new().with_data(points).with_color(FOUND).with_stroke_width(1.8).into()];
-    let hours: Vec<f64> = b.blocks.iter().map(|m| m.time_h).collect();
-    let (end, step) = tight_axis(hours.iter().copied());
-    let layout = half(styled(Layout::auto_from_plots(&plots)))
-        .with_x_label("time [h]")
-        .with_y_label(label)
-        .with_x_axis_min(0.0)
-        .with_x_axis_max(end)
-        .with_x_tick_step(step);
-    render(plots, even_up(layout, &up), name)
-}
-
 /// Columns over the varied one: what was found as curves, the reference as points.
 pub fn characteristic(x: &CharacteristicColumn, columns: &[&CharacteristicColumn], name: &str) -> String {
     let plots: Vec<Plot> = columns
@@ -202,7 +164,7 @@ fn plain() -> TickFormat {
 }
 
 /// The axis of a varied quantity: from zero, or logarithmic where it spans much.
-fn scaled_across(layout: Layout, values: &[f64]) -> Layout {
+pub(super) fn scaled_across(layout: Layout, values: &[f64]) -> Layout {
     let (low, high) = range(values);
     if low > 0.0 && high > WIDE * low {
         return layout.with_log_x().with_x_axis_min(low).with_x_axis_max(high).with_x_tick_format(plain());
@@ -226,7 +188,7 @@ fn scaled_up(layout: Layout, values: &[f64]) -> Layout {
 }
 
 /// An axis of what was found that starts at zero.
-fn even_up(layout: Layout, values: &[f64]) -> Layout {
+pub(super) fn even_up(layout: Layout, values: &[f64]) -> Layout {
     let (end, step) = tight_axis(values.iter().copied());
     layout.with_y_axis_min(range(values).0.min(0.0)).with_y_axis_max(end).with_y_tick_step(step)
 }

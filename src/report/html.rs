@@ -1,7 +1,7 @@
 //! `report.html`: one self-contained page, the answer first, then the evidence.
 
 use super::data::TOUCH_MPA;
-use super::{BearingRunningIn, Findings, figures, maps};
+use super::{BearingRunningIn, Findings, figures, maps, run_in_figures};
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 use serde::Serialize;
@@ -33,6 +33,8 @@ struct RunningInFigures {
     share: Option<String>,
     depth: Option<String>,
     map: Option<String>,
+    profile: Option<String>,
+    stribeck: Option<String>,
 }
 
 impl RunningInFigures {
@@ -41,10 +43,12 @@ impl RunningInFigures {
             return Self::default();
         }
         Self {
-            loss: Some(figures::running_in_loss(b, &format!("running-in-loss-{k}"))),
-            share: Some(figures::running_in_share(b, &format!("running-in-share-{k}"))),
-            depth: Some(figures::running_in_depth(b, &format!("running-in-depth-{k}"))),
+            loss: Some(run_in_figures::loss(b, &format!("running-in-loss-{k}"))),
+            share: Some(run_in_figures::share(b, &format!("running-in-share-{k}"))),
+            depth: Some(run_in_figures::depth(b, &format!("running-in-depth-{k}"))),
             map: maps::wear_map(b, &format!("wear-{k}")),
+            profile: b.profile.as_ref().map(|p| run_in_figures::profile(p, &format!("profile-{k}"))),
+            stribeck: run_in_figures::stribeck(&b.stribeck, &format!("stribeck-{k}")),
         }
     }
 }

@@ -10,6 +10,7 @@ mod data;
 mod figures;
 mod html;
 mod maps;
+mod run_in_figures;
 mod running_in;
 mod searches;
 mod svg;
@@ -28,8 +29,9 @@ pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
 pub use html::html;
 pub use running_in::{
-    BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, RunningInBlock, RunningInReport, StageReport,
-    WearLimitReport, running_in_csv, wear_csv,
+    ApproximationReport, BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, ProfileReport,
+    RunningInBlock, RunningInReport, StageReport, StribeckPoint, WearLimitReport, running_in_csv,
+    stribeck_csv, wear_csv,
 };
 pub use searches::{
     ChoiceReport, ChoiceRun, ChoicesReport, LinearReport, LocalOptimum, ParetoPoint, ParetoReport, RivalRun,
@@ -61,6 +63,7 @@ pub fn write_folder(findings: &Findings, folder: &Path) -> std::io::Result<()> {
     if let Some(r) = &findings.report.running_in {
         let csv = |text: Result<String, csv::Error>| text.map_err(std::io::Error::other);
         std::fs::write(folder.join("running-in.csv"), csv(running_in_csv(r))?)?;
+        std::fs::write(folder.join("stribeck.csv"), csv(stribeck_csv(r))?)?;
         std::fs::write(folder.join("wear.csv"), csv(wear_csv(r))?)?;
     }
     for (k, c) in findings.curves.iter().enumerate() {

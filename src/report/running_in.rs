@@ -13,6 +13,8 @@ pub struct RunningInReport {
     pub wear_depth_tolerance_um: f64,
     /// What was minimised, if the design is one for running-in.
     pub minimised: Option<MinimisedReport>,
+    /// The first leg of its search, with the approximation of the march, if there was one.
+    pub approximation: Option<ApproximationReport>,
     /// Limits on wear, if the design is one for running-in.
     pub limits: Vec<WearLimitReport>,
     /// One entry per bearing.
@@ -24,12 +26,37 @@ pub struct RunningInReport {
 pub struct MinimisedReport {
     /// In words.
     pub quantity: String,
-    /// At the start design, W.
-    pub start_w: f64,
-    /// At the design found, W.
-    pub optimum_w: f64,
+    /// At the start design.
+    pub start: f64,
+    /// At the design found.
+    pub optimum: f64,
+    /// Unit of both.
+    pub unit: String,
     /// Saving, per cent.
     pub saving_percent: f64,
+}
+
+/// The leg of a search with `P_alpha`: a weighted mean over a few moments of the march in place of the march itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ApproximationReport {
+    /// Blocks of the march of all bearings.
+    pub blocks: usize,
+    /// Groups of blocks that the approximation steps over.
+    pub groups: usize,
+    /// Weight of each group of the first bearing: with the losses at its beginning and its end they make the mean.
+    pub alpha: Vec<f64>,
+    /// Error of the approximation against the march at the start design, per cent.
+    pub start_error_percent: f64,
+    /// The same at the design found; none if the search ended before.
+    pub design_error_percent: Option<f64>,
+    /// Accepted designs of this leg, the first entries of the history.
+    pub iterations: u64,
+    /// Cycles simulated for it.
+    pub simulations: u64,
+    /// Cycles simulated for the marches themselves.
+    pub march_simulations: u64,
+    /// Whether the search went on with the march itself.
+    pub final_leg: bool,
 }
 
 /// A limit on wear.
@@ -111,6 +138,34 @@ pub struct BearingRunningIn {
     pub journal_wear_depth_um: Vec<Vec<f64>>,
     /// Width of the bearing, mm.
     pub width_mm: f64,
+    /// The shell across its width where it has worn most.
+    pub profile: Option<ProfileReport>,
+    /// Stribeck curves with new and with run-in surfaces.
+    pub stribeck: Vec<StribeckPoint>,
+}
+
+/// A profile across the width: what shapes and wear add to the gap.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct ProfileReport {
+    /// Where around the shell, deg.
+    pub angle_deg: f64,
+    /// Positions from the middle, mm.
+    pub axial_mm: Vec<f64>,
+    /// New, um.
+    pub new_um: Vec<f64>,
+    /// Run in, um.
+    pub run_in_um: Vec<f64>,
+}
+
+/// A point of two Stribeck curves: friction coefficients of the cycle, none where it could not be simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StribeckPoint {
+    /// Speed of the crankshaft, rpm.
+    pub speed_rpm: f64,
+    /// With new surfaces.
+    pub new: Option<f64>,
+    /// With run-in surfaces.
+    pub run_in: Option<f64>,
 }
 
 /// An operating point with new and with run-in surfaces.
@@ -207,6 +262,24 @@ pub fn wear_csv(report: &RunningInReport) -> Result<String, csv::Error> {
                     writer.write_record(labels.into_iter().chain(numbers))?;
                 }
             }
+        }
+    }
+    written(writer)
+}
+
+/// The Stribeck curves as text.
+pub fn stribeck_csv(report: &RunningInReport) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["bearing", "speed_rpm", "friction_new", "friction_run_in"])?;
+    let text = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:.9e}"));
+    for b in &report.bearings {
+        for p in &b.stribeck {
+            writer.write_record([
+                b.bearing.clone(),
+                format!("{:.4}", p.speed_rpm),
+                text(p.new),
+                text(p.run_in),
+            ])?;
         }
     }
     written(writer)

@@ -139,9 +139,9 @@ pub fn march(
             // A rest that is left over must not shorten the blocks that follow.
             length_s = Some(if h < rest_s { wanted } else { wanted.max(length_s.unwrap_or(0.0)) });
             gone_s += h;
-            let before = (first.loss_w(), block.worn_m.clone());
+            let (loss_w, worn_m) = (first.loss_w(), block.worn_m.clone());
             first = walk.accept(block, tell)?;
-            if options.nothing_new(before.0, &before.1, first.loss_w(), &walk.worn_m) {
+            if options.nothing_new(h, (loss_w, &worn_m), (first.loss_w(), &walk.worn_m)) {
                 break;
             }
         }
@@ -151,17 +151,16 @@ pub fn march(
 }
 
 impl MarchOptions {
-    /// Whether loss and surfaces changed so little that a stage has nothing more to tell.
+    /// Whether loss and surfaces changed so little over a time that a stage has nothing more to tell.
     pub(super) fn nothing_new(
         &self,
-        loss_w: f64,
-        worn_m: &SurfaceField,
-        then_w: f64,
-        then_m: &SurfaceField,
+        over_s: f64,
+        (loss_w, worn_m): (f64, &SurfaceField),
+        (then_w, then_m): (f64, &SurfaceField),
     ) -> bool {
         self.settled.is_some_and(|s| {
-            (then_w - loss_w).abs() <= s.loss_share * then_w.abs()
-                && largest(&moved(then_m, -1.0, worn_m)) <= s.depth_m
+            (then_w - loss_w).abs() <= s.loss_share_per_s * over_s * then_w.abs()
+                && largest(&moved(then_m, -1.0, worn_m)) <= s.depth_m_per_s * over_s
         })
     }
 }

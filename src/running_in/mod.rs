@@ -15,6 +15,7 @@
 //! Deliberately not here: study files, words, optimisation; roughness that changes with wear.
 
 mod adjoint;
+mod alpha;
 mod basis;
 mod field;
 mod gradient;
@@ -26,6 +27,7 @@ mod stage;
 mod tangent;
 mod walk;
 
+pub use alpha::{approximation, weights};
 pub use gradient::{MarchEngine, RunningInGradient, march_gradient};
 pub use march::{Block, Course, End, March, Moment, march, replay};
 pub use predicted::{PredictedMarch, march_predicted};

@@ -87,7 +87,7 @@ pub fn march_predicted(
             walk.pass(stage, corrected.worn_m, corrected.energy_j, h, &checked)?;
             (windows, predicted) = (windows + 1, predicted + 1);
             tell(walk.from_s);
-            if options.nothing_new(loss_w, &before, checked.loss_w(), &walk.worn_m) {
+            if options.nothing_new(h, (loss_w, &before), (checked.loss_w(), &walk.worn_m)) {
                 break;
             }
             loss_w = checked.loss_w();

@@ -50,13 +50,13 @@ pub(super) fn variable_count(stages: &[Stage]) -> usize {
     stages.iter().filter_map(of).max().map_or(0, |last| last + 1)
 }
 
-/// When a stage has nothing more to tell: a block changed both by less than this.
+/// When a stage has nothing more to tell: in a block both changed by less than this per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settled {
-    /// The friction loss, as a share of itself.
-    pub loss_share: f64,
-    /// The wear depth anywhere, m.
-    pub depth_m: f64,
+    /// The friction loss, as a share of itself, 1/s.
+    pub loss_share_per_s: f64,
+    /// The wear depth anywhere, m/s.
+    pub depth_m_per_s: f64,
 }
 
 /// How a march is made.

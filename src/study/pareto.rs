@@ -8,6 +8,7 @@ use super::check::Study;
 use super::constraints::{constraint, limit_si};
 use super::faults::{Faults, join};
 use super::file::{ConstraintFile, ParetoFile, StudyFile};
+use super::keep::Keep;
 use super::plans::ConstraintPlan;
 use super::searches::{FEASIBLE, Searched, resume};
 use super::seek::seek;
@@ -100,14 +101,17 @@ pub(super) fn front<'r>(
         context.progress.tell(&Event::Stage { name });
         let moved = limited(study, wanted, *limit);
         let Ok(mut plan) = plan(&moved, study.engine, context) else { continue };
-        let known = resume(study, &mut plan, format!("pareto-{k}"), store) > 0;
+        let keep = Keep::of(study, format!("pareto-{k}"), store);
+        let known = resume(&mut plan, &keep) > 0;
         let (beside, end) = neighbour.as_ref().map_or((&found.plan, &found.minimum), |(p, m)| (p, m));
         let start = if end.values.is_some() { &end.x } else { &plan.start };
         if let (false, Ok(cycles)) = (known, beside.problem.evaluated(start)) {
             plan.problem.begin_beside(cycles);
         }
         let start = start.clone();
-        let Ok(end) = seek(&moved, &plan, &start, &study.optimiser.options, context) else { continue };
+        let Ok(end) = seek(&moved, &plan, &start, &study.optimiser.options, (&keep, context)) else {
+            continue;
+        };
         let minimum = end.minimum;
         points.push(point(&moved, wanted, &plan, &minimum, *limit));
         let (own, beyond) = plan.problem.costs();

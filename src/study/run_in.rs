@@ -5,10 +5,10 @@ use super::check::Study;
 use super::limits::{ACTIVE, ACTIVE_GAP, MET};
 use super::plans::OperatingPoint;
 use super::programme::{bearing_of, march_options, programme, stages};
+use super::run_in_curves::{profile, stribeck};
 use super::running_in::{RunningInPlan, StagePlan};
 use super::searches::Searched;
 use crate::cranktrain::{BearingOutput, JournalBearing, SurfaceField};
-use crate::optimise::Minimum;
 use crate::report::{
     BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, RunningInBlock, RunningInReport, StageReport,
     WearLimitReport,
@@ -37,21 +37,26 @@ pub(super) fn report(study: &Study, found: &Searched, context: RunContext<'_>) -
     Some(RunningInReport {
         stages: programme(study, wanted, x).iter().map(stage).collect(),
         wear_depth_tolerance_um: wanted.tolerance_m * 1e6,
-        minimised: minimised(wanted, &found.minimum),
+        minimised: minimised(wanted, found),
+        approximation: found.run_in.as_ref().and_then(|end| end.approximation.clone()),
         limits: limits(study, wanted, found),
         bearings: bearings.collect(),
     })
 }
 
 /// What a running-in design minimised.
-fn minimised(wanted: &RunningInPlan, end: &Minimum) -> Option<MinimisedReport> {
-    let quantity = match wanted.minimise? {
-        RunningInQuantity::FinalLoss => "friction loss in the end, all bearings",
-        _ => "friction loss meant over the programme, all bearings",
+fn minimised(wanted: &RunningInPlan, found: &Searched) -> Option<MinimisedReport> {
+    let (quantity, scale, unit) = match wanted.minimise? {
+        RunningInQuantity::FinalLoss => ("friction loss in the end, all bearings", 1.0, "W"),
+        RunningInQuantity::EnergyLost => ("energy lost over the programme, all bearings", 1e-3, "kJ"),
+        _ => ("friction loss meant over the programme, all bearings", 1.0, "W"),
     };
-    let (start_w, optimum_w) = (end.history.first()?.objective_w, end.values.as_ref()?.objective);
-    let (quantity, saving_percent) = (quantity.to_owned(), 100.0 * (1.0 - optimum_w / start_w));
-    Some(MinimisedReport { quantity, start_w, optimum_w, saving_percent })
+    let end = found.run_in.as_ref()?;
+    let (start, optimum) = (scale * end.start, scale * found.minimum.values.as_ref()?.objective);
+    let rough = end.approximation.as_ref().is_some_and(|a| !a.final_leg);
+    let quantity = if rough { format!("{quantity}, approximated") } else { quantity.to_owned() };
+    let saving_percent = 100.0 * (1.0 - optimum / start);
+    Some(MinimisedReport { quantity, start, optimum, unit: unit.to_owned(), saving_percent })
 }
 
 /// The limits on wear of a running-in design: behind those of the study, per bearing.
@@ -123,6 +128,10 @@ fn bearing(
     match went {
         Ok(course) => {
             fill(&mut found, wanted, &stages, &course);
+            if let Some(last) = stages.last() {
+                found.profile = profile(&last.model, &course.worn_m);
+                found.stribeck = stribeck(last, &course.worn_m, &options.orbit, context.cancel);
+            }
             found.operating_points = before_after(study, plan, (bearing, x), &course, context);
         }
         Err(MarchError::Orbit(e)) => {

@@ -10,6 +10,8 @@ use super::sections::worst_case;
 use crate::running_in::{RunningInQuantity, Settled};
 
 const PATH: &str = "running_in";
+/// Seconds of an hour.
+const HOUR_S: f64 = 3600.0;
 /// Sharpness of the smooth maximum of the wear depth.
 const SHARPNESS: f64 = 100.0;
 
@@ -139,17 +141,17 @@ fn march_plan(r: &mut RunningInFile, faults: &mut Faults) -> RunningInPlan {
     faults.range(Some(journal_share), &at("journal_share"), |v| (0.0..=1.0).contains(&v), "between 0 and 1");
     let counted = |v: f64| (1.0..=1e5).contains(&v);
     faults.range(Some(max_blocks as f64), &at("max_blocks"), counted, "between 1 and 100000");
-    let loss_share = faults.get(&r.settled_loss_change, &at("settled_loss_change"));
-    let depth_m = faults.get(&r.settled_wear_depth, &at("settled_wear_depth")).map(|v| v.si());
+    let loss_share = faults.get(&r.settled_loss_change_per_hour, &at("settled_loss_change_per_hour"));
+    let depth_m = faults.get(&r.settled_wear_per_hour, &at("settled_wear_per_hour")).map(|v| v.si());
     faults.range(
         loss_share,
-        &at("settled_loss_change"),
+        &at("settled_loss_change_per_hour"),
         |v| v > 0.0 && v < 1.0,
         "above 0 and below 1: a share of the loss",
     );
-    faults.range(depth_m, &at("settled_wear_depth"), sensible, "above zero and at most 100 um");
-    if r.settled_loss_change.is_absent() != r.settled_wear_depth.is_absent() {
-        let words = "a stage ends early when loss and surfaces change little: give both settled_loss_change and settled_wear_depth";
+    faults.range(depth_m, &at("settled_wear_per_hour"), sensible, "above zero and at most 100 um");
+    if r.settled_loss_change_per_hour.is_absent() != r.settled_wear_per_hour.is_absent() {
+        let words = "a stage ends early when loss and surfaces change little: give both settled_loss_change_per_hour and settled_wear_per_hour";
         faults.add(PATH, words);
     }
     RunningInPlan {
@@ -157,7 +159,10 @@ fn march_plan(r: &mut RunningInFile, faults: &mut Faults) -> RunningInPlan {
         tolerance_m,
         journal_share,
         max_blocks,
-        settled: loss_share.zip(depth_m).map(|(loss_share, depth_m)| Settled { loss_share, depth_m }),
+        settled: loss_share.zip(depth_m).map(|(share, depth)| Settled {
+            loss_share_per_s: share / HOUR_S,
+            depth_m_per_s: depth / HOUR_S,
+        }),
         predicted: acceleration == AccelerationName::Pod,
         minimise: None,
         approximate_first: false,

@@ -1,32 +1,34 @@
 //! The running-in design: least loss while the bearings wear, within limits on what they wear.
 //!
 //! ```text
-//! minimise  sum_bearings count * P_wear(x)  (or the loss in the end)    subject to the limits of the study with new surfaces,
-//!           largest wear depth and worn volume of every bearing within theirs
+//! minimise  sum_bearings count * P_wear(x)  (or energy, or the loss in the end)    subject to the limits of the study with new
+//!           surfaces, and those of the running-in of every bearing
 //! ```
 //!
 //! The blocks of each march are those that its error control chose at the start design, so that values and gradients belong to one
-//! discrete problem (see [`crate::running_in`]); the run marches the design anew, with blocks of its own, and reports that.
+//! discrete problem (see [`crate::running_in`]); the run marches the design anew, with blocks of its own, and reports that. A first
+//! leg may take groups of blocks instead (`P_alpha`); the next begins at its end, with the blocks that are right there. A leg whose
+//! blocks do not fit its end, where a march of its own finds other values, is followed by one more.
+//!
+//! What was found at every design is remembered and saved: a search that was stopped marches nothing twice.
 
 use super::build::Plan;
 use super::check::Study;
+use super::keep::Keep;
 use super::programme::{march_options, stages};
 use super::running_in::RunningInPlan;
 use crate::optimise::{ConstrainedProblem, EvaluationError, LinearConstraint, Slopes, Values};
 use crate::run::{Cost, IterationEvent, RunContext};
 use crate::running_in::{
-    March, MarchEngine, MarchError, MarchOptions, RunningInQuantity, Stage, march, march_gradient, replay,
+    March, MarchEngine, MarchError, MarchOptions, RunningInQuantity, Stage, approximation, march,
+    march_gradient, replay,
 };
 use rayon::prelude::*;
-use std::sync::{Arc, Mutex};
+use serde::{Deserialize, Serialize};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// One bearing of the problem.
-struct Own {
-    bearing: usize,
-    count: f64,
-    options: MarchOptions,
-    shares: Vec<Vec<f64>>,
-}
+/// Blocks of every bearing and stage, as shares of the stage's duration.
+type Blocks = Vec<Vec<Vec<f64>>>;
 
 /// A bearing marched through its programme at a design.
 struct Marched {
@@ -40,16 +42,37 @@ struct Latest {
     marched: Arc<Vec<Marched>>,
 }
 
+/// What was found at a design: per bearing the minimised quantity and the limited ones, and their gradients where they were asked for.
+#[derive(Clone, Serialize, Deserialize)]
+struct Found {
+    x: Vec<f64>,
+    values: Vec<Vec<f64>>,
+    rows: Option<Vec<Vec<Vec<f64>>>>,
+}
+
+/// All that was found for a choice of blocks, and the work it was.
+#[derive(Default, Serialize, Deserialize)]
+struct Memory {
+    blocks: Blocks,
+    groups: Blocks,
+    /// What the marches that chose the blocks found there.
+    chosen_at: Vec<Vec<f64>>,
+    found: Vec<Found>,
+    cost: Cost,
+}
+
 /// The problem; see the module page.
 pub(super) struct RunningInProblem<'p, 'r> {
     study: &'p Study,
     wanted: &'p RunningInPlan,
     plan: &'p Plan<'r>,
     context: RunContext<'p>,
-    own: Vec<Own>,
+    keep: Keep<'p>,
+    options: Vec<MarchOptions>,
+    blocks: Blocks,
+    memory: Mutex<Memory>,
     /// The design marched last: its gradients are asked for next, if it is accepted.
     latest: Mutex<Option<Latest>>,
-    cost: Mutex<Cost>,
 }
 
 fn refused(e: MarchError) -> EvaluationError {
@@ -59,61 +82,197 @@ fn refused(e: MarchError) -> EvaluationError {
     }
 }
 
+fn open<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+    lock.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The minimised quantity and the limited ones, in this order.
+fn quantities(wanted: &RunningInPlan) -> Vec<RunningInQuantity> {
+    let minimised = wanted.minimise.unwrap_or(RunningInQuantity::MeanLoss);
+    std::iter::once(minimised).chain(wanted.limits.iter().map(|l| l.quantity)).collect()
+}
+
+/// Number of blocks.
+pub(super) fn count(blocks: &Blocks) -> usize {
+    blocks.iter().flatten().map(Vec::len).sum()
+}
+
 impl<'p, 'r> RunningInProblem<'p, 'r> {
-    /// The problem with the blocks that its start design asks for.
+    /// The problem with the blocks that a start design asks for.
     pub fn new(
         study: &'p Study,
         wanted: &'p RunningInPlan,
         plan: &'p Plan<'r>,
         start: &[f64],
+        keep: Keep<'p>,
         context: RunContext<'p>,
     ) -> Result<Self, EvaluationError> {
-        let own = |bearing: usize| {
-            let plan_of = &study.bearings[bearing];
-            let options = march_options(study, wanted, bearing);
-            let stages = stages(study, wanted, plan, bearing, start)
-                .map_err(|e| EvaluationError::Failed(e.to_string()))?;
-            let found = march(&stages, &options, context.cancel, &mut |_| {}).map_err(refused)?;
-            let (count, shares) = (f64::from(plan_of.count), found.shares(&stages));
-            Ok(Own { bearing, count, options, shares })
+        let options: Vec<MarchOptions> =
+            (0..study.bearings.len()).map(|b| march_options(study, wanted, b)).collect();
+        let saved = keep.load().and_then(|bytes| postcard::from_bytes::<Memory>(&bytes).ok());
+        let memory = match saved {
+            Some(memory) => memory,
+            None => {
+                let memory = first_march(study, wanted, plan, start, &options, context)?;
+                keep.save(&postcard::to_stdvec(&memory).unwrap_or_default());
+                memory
+            }
         };
-        let own: Result<Vec<Own>, EvaluationError> = (0..study.bearings.len()).map(own).collect();
-        let (latest, cost) = (Mutex::default(), Mutex::default());
-        Ok(Self { study, wanted, plan, context, own: own?, latest, cost })
+        let (blocks, latest) = (memory.blocks.clone(), Mutex::default());
+        let memory = Mutex::new(memory);
+        Ok(Self { study, wanted, plan, context, keep, options, blocks, memory, latest })
+    }
+
+    /// The same with groups of its blocks: `P_alpha` in place of `P_wear`.
+    pub fn approximated(&self, keep: Keep<'p>) -> Self {
+        let groups = open(&self.memory).groups.clone();
+        let saved = keep.load().and_then(|bytes| postcard::from_bytes::<Memory>(&bytes).ok());
+        let memory = saved.unwrap_or_else(|| Memory { blocks: groups.clone(), ..Memory::default() });
+        Self {
+            study: self.study,
+            wanted: self.wanted,
+            plan: self.plan,
+            context: self.context,
+            keep,
+            options: self.options.clone(),
+            blocks: groups,
+            memory: Mutex::new(memory),
+            latest: Mutex::default(),
+        }
+    }
+
+    /// Largest relative difference between what is found at a design and what the marches found from which another problem chose its
+    /// blocks there.
+    pub fn apart(&self, x: &[f64], other: &Self) -> Result<f64, EvaluationError> {
+        let (frozen, anew) = (self.worth(x)?, open(&other.memory).chosen_at.clone());
+        let scales = std::iter::once(0.0).chain(self.wanted.limits.iter().map(|l| l.limit));
+        let scales: Vec<f64> = scales.collect();
+        let of = |(a, b): (&Vec<f64>, &Vec<f64>)| {
+            let each = a.iter().zip(b).zip(&scales).map(|((a, b), s)| (a - b).abs() / a.abs().max(*s));
+            each.fold(0.0, f64::max)
+        };
+        Ok(frozen.iter().zip(&anew).map(of).fold(0.0, f64::max))
+    }
+
+    /// Blocks of the march, and of them the groups of its approximation.
+    pub fn sizes(&self) -> (usize, usize) {
+        let memory = open(&self.memory);
+        (count(&self.blocks), count(&memory.groups))
+    }
+
+    /// Blocks of every bearing and stage.
+    pub fn blocks(&self) -> &Blocks {
+        &self.blocks
     }
 
     /// Work of all marches and of their gradients.
     pub fn cost(&self) -> Cost {
-        *self.cost.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+        open(&self.memory).cost
     }
 
     fn spend(&self, cost: Cost) {
-        *self.cost.lock().unwrap_or_else(std::sync::PoisonError::into_inner) += cost;
+        open(&self.memory).cost += cost;
     }
 
     /// All bearings marched at a design.
     fn marched(&self, x: &[f64]) -> Result<Arc<Vec<Marched>>, EvaluationError> {
-        let latest = || self.latest.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if let Some(known) = latest().as_ref().filter(|known| known.x == x) {
+        if let Some(known) = open(&self.latest).as_ref().filter(|known| known.x == x) {
             return Ok(known.marched.clone());
         }
-        let one = |own: &Own| {
-            let stages = stages(self.study, self.wanted, self.plan, own.bearing, x)
+        let one = |bearing: usize| {
+            let stages = stages(self.study, self.wanted, self.plan, bearing, x)
                 .map_err(|e| EvaluationError::Failed(e.to_string()))?;
-            let found =
-                replay(&stages, &own.shares, &own.options, None, self.context.cancel).map_err(refused)?;
+            let (blocks, options) = (&self.blocks[bearing], &self.options[bearing]);
+            let found = replay(&stages, blocks, options, None, self.context.cancel).map_err(refused)?;
             self.spend(found.course.cost);
             Ok(Marched { stages, found })
         };
-        let all: Result<Vec<Marched>, EvaluationError> = self.own.par_iter().map(one).collect();
+        let all: Result<Vec<Marched>, EvaluationError> =
+            (0..self.options.len()).into_par_iter().map(one).collect();
         let marched = Arc::new(all?);
-        *latest() = Some(Latest { x: x.to_vec(), marched: marched.clone() });
+        *open(&self.latest) = Some(Latest { x: x.to_vec(), marched: marched.clone() });
         Ok(marched)
     }
 
-    fn minimised(&self) -> RunningInQuantity {
-        self.wanted.minimise.unwrap_or(RunningInQuantity::MeanLoss)
+    fn counts(&self) -> impl Iterator<Item = f64> {
+        self.study.bearings.iter().map(|b| f64::from(b.count))
     }
+
+    fn known(&self, x: &[f64]) -> Option<Found> {
+        open(&self.memory).found.iter().find(|f| f.x == x).cloned()
+    }
+
+    /// What a design is worth, from memory or from its marches.
+    fn worth(&self, x: &[f64]) -> Result<Vec<Vec<f64>>, EvaluationError> {
+        if let Some(known) = self.known(x) {
+            return Ok(known.values);
+        }
+        let of = quantities(self.wanted);
+        let one = |m: &Marched| -> Vec<f64> {
+            let Some(Stage { model, .. }) = m.stages.last() else { return Vec::new() };
+            of.iter().map(|q| q.value(&m.found.course, model)).collect()
+        };
+        let values: Vec<Vec<f64>> = self.marched(x)?.iter().map(one).collect();
+        open(&self.memory).found.push(Found { x: x.to_vec(), values: values.clone(), rows: None });
+        Ok(values)
+    }
+
+    /// Gradients at a design, from memory or from its marches; what is known by then is saved.
+    fn gradients(&self, x: &[f64]) -> Result<Vec<Vec<Vec<f64>>>, EvaluationError> {
+        if let Some(rows) = self.known(x).and_then(|known| known.rows) {
+            return Ok(rows);
+        }
+        self.worth(x)?;
+        let (lower, upper) = self.bounds();
+        let steps: Vec<f64> =
+            lower.iter().zip(&upper).map(|(l, u)| self.study.perturbation * (u - l)).collect();
+        let engine = MarchEngine { name: self.plan.problem.engine_name(), steps: &steps };
+        let of = quantities(self.wanted);
+        let mut all = Vec::new();
+        for (Marched { stages, found }, options) in self.marched(x)?.iter().zip(&self.options) {
+            let table = march_gradient(engine, stages, found, options, &of, self.context.cancel);
+            let mut table = table.map_err(refused)?;
+            self.spend(table.cost);
+            table.rows.iter_mut().for_each(|row| row.resize(x.len(), 0.0));
+            all.push(table.rows);
+        }
+        let mut memory = open(&self.memory);
+        if let Some(found) = memory.found.iter_mut().find(|f| f.x == x) {
+            found.rows = Some(all.clone());
+        }
+        self.keep.save(&postcard::to_stdvec(&*memory).unwrap_or_default());
+        Ok(all)
+    }
+
+    /// The minimised quantity of all bearings at a design.
+    pub fn objective(&self, x: &[f64]) -> Result<f64, EvaluationError> {
+        Ok(self.worth(x)?.iter().zip(self.counts()).map(|(own, n)| n * own[0]).sum())
+    }
+}
+
+/// The marches at a start, whose blocks the problem keeps.
+fn first_march(
+    study: &Study,
+    wanted: &RunningInPlan,
+    plan: &Plan,
+    start: &[f64],
+    options: &[MarchOptions],
+    context: RunContext<'_>,
+) -> Result<Memory, EvaluationError> {
+    let mut memory = Memory::default();
+    for (bearing, options) in options.iter().enumerate() {
+        let stages = stages(study, wanted, plan, bearing, start)
+            .map_err(|e| EvaluationError::Failed(e.to_string()))?;
+        let found = march(&stages, options, context.cancel, &mut |_| {}).map_err(refused)?;
+        memory.blocks.push(found.shares(&stages));
+        memory.groups.push(approximation(&found, &stages, options));
+        if let Some(Stage { model, .. }) = stages.last() {
+            let of = quantities(wanted);
+            memory.chosen_at.push(of.iter().map(|q| q.value(&found.course, model)).collect());
+        }
+        memory.cost += found.course.cost;
+    }
+    Ok(memory)
 }
 
 impl ConstrainedProblem for RunningInProblem<'_, '_> {
@@ -123,12 +282,9 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
 
     fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
         let mut values = self.plan.problem.values(x)?;
-        values.objective = 0.0;
-        for (own, Marched { stages, found, .. }) in self.own.iter().zip(&*self.marched(x)?) {
-            let Some(Stage { model, .. }) = stages.last() else { continue };
-            values.objective += own.count * self.minimised().value(&found.course, model);
-            let beyond =
-                self.wanted.limits.iter().map(|l| l.quantity.value(&found.course, model) / l.limit - 1.0);
+        values.objective = self.objective(x)?;
+        for own in self.worth(x)? {
+            let beyond = own[1..].iter().zip(&self.wanted.limits).map(|(v, l)| v / l.limit - 1.0);
             values.inequalities.extend(beyond);
         }
         Ok(values)
@@ -137,22 +293,12 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
     fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
         let mut slopes = self.plan.problem.slopes(x)?;
         slopes.objective.fill(0.0);
-        let (lower, upper) = self.bounds();
-        let steps: Vec<f64> =
-            lower.iter().zip(&upper).map(|(l, u)| self.study.perturbation * (u - l)).collect();
-        let engine = MarchEngine { name: self.study.engine, steps: &steps };
-        let of: Vec<RunningInQuantity> =
-            std::iter::once(self.minimised()).chain(self.wanted.limits.iter().map(|l| l.quantity)).collect();
-        for (own, Marched { stages, found }) in self.own.iter().zip(&*self.marched(x)?) {
-            let table = march_gradient(engine, stages, found, &own.options, &of, self.context.cancel);
-            let table = table.map_err(refused)?;
-            self.spend(table.cost);
-            let mut rows = table.rows.into_iter();
+        for (rows, count) in self.gradients(x)?.into_iter().zip(self.counts()) {
+            let mut rows = rows.into_iter();
             let objective = rows.next().unwrap_or_default();
-            slopes.objective.iter_mut().zip(&objective).for_each(|(sum, g)| *sum += own.count * g);
+            slopes.objective.iter_mut().zip(&objective).for_each(|(sum, g)| *sum += count * g);
             for (mut row, limit) in rows.zip(&self.wanted.limits) {
                 row.iter_mut().for_each(|g| *g /= limit.limit);
-                row.resize(x.len(), 0.0);
                 slopes.inequalities.push(row);
             }
         }

@@ -5,6 +5,8 @@
 
 use super::build::{Plan, plan};
 use super::check::Study;
+use super::keep::Keep;
+use super::run_in_search::RunInEnd;
 use super::seek::{End, seek};
 use crate::gradient::EngineName;
 use crate::optimise::{Method, Minimum, Outcome, Polished, SearchOptions, latin_hypercube};
@@ -44,6 +46,8 @@ pub(super) struct Searched<'r> {
     pub polished: Option<Polished>,
     /// Work of all marches through running-in.
     pub marches: Cost,
+    /// How a running-in design was searched.
+    pub run_in: Option<RunInEnd>,
     /// All searches, if there were several.
     pub starts: Option<StartsReport>,
     /// Work of the searches that did not win: simulations, and gradients beyond them.
@@ -52,12 +56,10 @@ pub(super) struct Searched<'r> {
 
 /// Lets a plan save what it knows, and gives it what was saved of the same study by the same program; returns the number of
 /// simulations that were known.
-pub(super) fn resume<'r>(study: &Study, plan: &mut Plan<'r>, name: String, store: &'r dyn Store) -> u64 {
-    let head = format!("{} {} {name}\n", env!("CARGO_PKG_VERSION"), study.hash);
-    let found = store.load(&name);
-    let rest = found.as_deref().and_then(|all| all.strip_prefix(head.as_bytes()));
-    let known = rest.is_some_and(|rest| plan.problem.restore(rest));
-    plan.problem.saved_by(move |snapshot| store.save(&name, &[head.as_bytes(), snapshot].concat()));
+pub(super) fn resume<'r>(plan: &mut Plan<'r>, keep: &Keep<'r>) -> u64 {
+    let known = keep.load().is_some_and(|found| plan.problem.restore(&found));
+    let keep = keep.clone();
+    plan.problem.saved_by(move |snapshot| keep.save(snapshot));
     if known { plan.problem.costs().0.simulations } else { 0 }
 }
 
@@ -73,15 +75,17 @@ pub(super) fn searches<'r>(
     let options = &study.optimiser.options;
     if study.optimiser.starts <= 1 {
         let mut plan = plan(study, study.engine, context).map_err(|e| e.to_string())?;
-        let known = resume(study, &mut plan, format!("{prefix}search"), store);
+        let keep = Keep::of(study, format!("{prefix}search"), store);
+        let known = resume(&mut plan, &keep);
         if known > 0 {
             let name = format!("going on where the last run stopped, with {known} simulations known");
             context.progress.tell(&Event::Stage { name });
         }
         let start = from.unwrap_or(&plan.start).to_vec();
-        let End { minimum, shares, polished, marches } = seek(study, &plan, &start, options, context)?;
+        let End { minimum, shares, polished, marches, run_in } =
+            seek(study, &plan, &start, options, (&keep, context))?;
         let others = Default::default();
-        return Ok(Searched { plan, minimum, shares, polished, marches, starts: None, others });
+        return Ok(Searched { plan, minimum, shares, polished, marches, run_in, starts: None, others });
     }
     let mut starts = starts(study);
     if let Some(from) = from {
@@ -93,8 +97,9 @@ pub(super) fn searches<'r>(
         .map(|(k, start)| {
             let quiet = RunContext { progress: &Silent, ..context };
             let mut plan = plan(study, study.engine, quiet).map_err(|e| e.to_string())?;
-            resume(study, &mut plan, format!("{prefix}start-{k}"), store);
-            let end = seek(study, &plan, start, options, quiet)?;
+            let keep = Keep::of(study, format!("{prefix}start-{k}"), store);
+            resume(&mut plan, &keep);
+            let end = seek(study, &plan, start, options, (&keep, quiet))?;
             let loss = end.minimum.values.as_ref().map_or(f64::NAN, |v| v.objective);
             let name = format!("start {} of {}: {}", k + 1, starts.len(), crate::report::short(loss));
             context.progress.tell(&Event::Stage { name: format!("{name} W") });
@@ -107,14 +112,14 @@ pub(super) fn searches<'r>(
         .min_by(|a, b| rank(&ends[*a].1.minimum).total_cmp(&rank(&ends[*b].1.minimum)))
         .unwrap_or(0);
     let marches = ends.iter().map(|(_, end)| end.marches).sum();
-    let (mut plan, End { minimum, shares, polished, .. }) = ends.swap_remove(best);
+    let (mut plan, End { minimum, shares, polished, run_in, .. }) = ends.swap_remove(best);
     let others = ends
         .iter()
         .map(|(p, _)| p.problem.costs())
         .fold((Cost::default(), Cost::default()), |a, c| (a.0 + c.0, a.1 + c.1));
     // The saving is against the study's start, whichever start led to the best design.
     plan.start = study.parameters.iter().map(|p| p.start).collect();
-    Ok(Searched { plan, minimum, shares, polished, marches, starts: Some(report), others })
+    Ok(Searched { plan, minimum, shares, polished, marches, run_in, starts: Some(report), others })
 }
 
 /// Designs simulated for a plan.
@@ -235,9 +240,10 @@ fn rival_run<'r>(
     }
     let began = Instant::now();
     let mut plan = plan(study, engine, context).ok()?;
-    resume(study, &mut plan, format!("rival-{k}"), store);
+    let keep = Keep::of(study, format!("rival-{k}"), store);
+    resume(&mut plan, &keep);
     let options = SearchOptions { method, ..study.optimiser.options };
-    let end = seek(study, &plan, &plan.start, &options, context).ok()?.minimum;
+    let end = seek(study, &plan, &plan.start, &options, (&keep, context)).ok()?.minimum;
     let (simulations, gradients) = plan.problem.costs();
     let per_cycle = simulations.factorisations as f64 / simulations.simulations.max(1) as f64;
     let cases = plan.cases.len() as f64;

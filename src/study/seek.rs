@@ -2,7 +2,8 @@
 
 use super::build::Plan;
 use super::check::Study;
-use super::running_in_design::RunningInProblem;
+use super::keep::Keep;
+use super::run_in_search::{RunInEnd, seek_run_in};
 use crate::optimise::{
     EvaluationError, Minimum, Outcome, Polished, SearchOptions, polish, search, search_worst,
 };
@@ -20,6 +21,8 @@ pub(super) struct End {
     pub polished: Option<Polished>,
     /// Work of marches through running-in.
     pub marches: Cost,
+    /// How a running-in design was searched.
+    pub run_in: Option<RunInEnd>,
 }
 
 /// Searches from a start.
@@ -28,14 +31,10 @@ pub(super) fn seek(
     plan: &Plan,
     start: &[f64],
     options: &SearchOptions,
-    context: RunContext<'_>,
+    (keep, context): (&Keep<'_>, RunContext<'_>),
 ) -> Result<End, String> {
     if let Some(wanted) = study.running_in.as_ref().filter(|r| r.minimise.is_some()) {
-        let problem = RunningInProblem::new(study, wanted, plan, start, context)
-            .map_err(|e| format!("the start design cannot be run in: {e}"))?;
-        let minimum = search(&problem, start, options).map_err(|e| e.to_string())?;
-        let marches = problem.cost();
-        return Ok(End { minimum, shares: Vec::new(), polished: None, marches });
+        return seek_run_in(study, wanted, plan, start, options, (keep, context));
     }
     let (mut minimum, shares) = match &study.robust {
         _ if study.worst_case => search_worst(&plan.problem, start, options),
@@ -59,5 +58,5 @@ pub(super) fn seek(
             minimum.outcome = Outcome::Converged;
         }
     }
-    Ok(End { minimum, shares, polished, marches: Cost::default() })
+    Ok(End { minimum, shares, polished, marches: Cost::default(), run_in: None })
 }

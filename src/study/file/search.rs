@@ -201,10 +201,10 @@ section! {
         max_time_to_run_in: Duration,
         /// Whether the search of a running-in design begins with a cheap approximation of the march (P_alpha). Default true.
         approximate_first: bool,
-        /// A stage ends before its time when a block changes the friction loss by less than this share, and the surfaces by less than settled_wear_depth. Default: no stage does.
-        settled_loss_change: f64,
-        /// See settled_loss_change.
-        settled_wear_depth: Length,
+        /// A stage ends before its time when the friction loss changes by less than this share per hour, and the wear depth by less than settled_wear_per_hour. Default: no stage does.
+        settled_loss_change_per_hour: f64,
+        /// See settled_loss_change_per_hour.
+        settled_wear_per_hour: Length,
         /// How cycles are saved where the found design is run in: "pod" predicts them from those before wherever the error it makes is within the tolerance, "none" computes all. Default "pod".
         acceleration: AccelerationName,
         /// Error of the wear depth that one block of the march may have. Default "0.02 um".
