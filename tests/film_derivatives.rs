@@ -15,6 +15,7 @@ struct Point {
     rate: Vec<f64>,
     input: FilmInput,
     shape_m: Vec<f64>,
+    shell_left: Vec<f64>,
     marks: Vec<f64>,
 }
 
@@ -49,6 +50,11 @@ impl Point {
             input: input(x, case.tilted()),
             shape_m: if case.shaped { (0..n).map(shape).collect() } else { Vec::new() },
             marks: (0..n).map(|k| ((k % 7) as f64 - 2.0) / 3.0).collect(),
+            shell_left: if case.shaped {
+                (0..n).map(|k| 0.7 + 0.2 * number(5 * k + 1)).collect()
+            } else {
+                Vec::new()
+            },
         }
     }
 
@@ -59,6 +65,7 @@ impl Point {
         Self {
             q: (0..at.q.len()).map(share).collect(),
             input: to.input.moved(&input(&zero, case.tilted()), -1.0),
+            shell_left: to.shell_left.iter().map(|left| left - 0.7).collect(),
             ..to
         }
     }
@@ -71,15 +78,28 @@ impl Point {
             input: self.input.moved(&d.input, t),
             shape_m: add(&self.shape_m, &d.shape_m),
             marks: self.marks.clone(),
+            shell_left: add(&self.shell_left, &d.shell_left),
         }
     }
 
     fn site(&self, journal_angle_rad: f64) -> FilmSite<'_> {
-        FilmSite { input: self.input, shape_m: &self.shape_m, journal_angle_rad, marks: &self.marks }
+        FilmSite {
+            input: self.input,
+            shape_m: &self.shape_m,
+            journal_angle_rad,
+            marks: &self.marks,
+            shell_left: &self.shell_left,
+        }
     }
 
     fn change(&self) -> FilmChange<'_> {
-        FilmChange { q: &self.q, rate: &self.rate, input: self.input, shape_m: &self.shape_m }
+        FilmChange {
+            q: &self.q,
+            rate: &self.rate,
+            input: self.input,
+            shape_m: &self.shape_m,
+            shell_left: &self.shell_left,
+        }
     }
 }
 
@@ -169,11 +189,13 @@ fn check_transpose(case: &Case, at: &Point, along: &Point, angle: f64, tangent: 
         dot(&bar.rate, &along.rate),
         bar.input.dot(&along.input),
         dot(&bar.gap_m, &along.shape_m),
+        dot(&bar.shell_left, &along.shell_left),
     ];
     let size = dot_abs(&bar.q, &along.q)
         + dot_abs(&bar.rate, &along.rate)
         + dot_abs(&bar.input.to_array(), &along.input.to_array())
-        + dot_abs(&bar.gap_m, &along.shape_m);
+        + dot_abs(&bar.gap_m, &along.shape_m)
+        + dot_abs(&bar.shell_left, &along.shell_left);
     let (forward, backward): (f64, f64) = (forward.iter().sum(), backward.iter().sum());
     assert!((forward - backward).abs() <= 1e-11 * size, "{}: {forward} {backward} of {size}", case.name);
 }
@@ -208,7 +230,7 @@ fn check_linearised(case: &Case, at: &Point, along: &Point, angle: f64, alpha: f
         // In closed form the velocity takes the place of the content's rate.
         moves.velocity_m_s = u.eccentricity_m.map(|e| alpha * e);
     }
-    let still = FilmChange { q: &along.q, rate: &[], input: moves, shape_m: &[] };
+    let still = FilmChange { q: &along.q, rate: &[], input: moves, shape_m: &[], shell_left: &[] };
     let content = film.tangent(&site, &at.q, &rate, &still).content;
     let d_rate: Vec<f64> = content.iter().map(|c| alpha * c).collect();
     let tangent = film.tangent(&site, &at.q, &rate, &FilmChange { rate: &d_rate, ..still });

@@ -294,6 +294,28 @@ fn a_stage_ends_early_when_blocks_change_little() {
     assert!((again.course.energy_j / found.course.energy_j - 1.0).abs() < 1e-9);
 }
 
+#[test]
+fn surfaces_that_wear_smooth_touch_less() {
+    use stribeck::cranktrain::{BearingSetup, JournalBearing, Smoothing};
+    let study = leaning(&[]);
+    let (stage, orbit) = stage(&study, 1200.0);
+    let smooths = |left: f64| {
+        let smoothing = Some(Smoothing { left, depth_m: 2e-7 });
+        let setup = BearingSetup { smoothing, ..stage.model.setup().clone() };
+        let stages = [Stage::new(JournalBearing::new(setup).unwrap(), 1200.0)];
+        march_predicted(&stages, &options(orbit), &Cancel::default(), &mut |_| {}).unwrap().course
+    };
+    let [rough, smooth] = [1.0, 0.4].map(smooths);
+    println!("contact share {} {}", rough.last.contact_share(), smooth.last.contact_share());
+    // Without smoothing the option changes nothing but rounding.
+    let stages = [stage];
+    let plain = march_predicted(&stages, &options(orbit), &Cancel::default(), &mut |_| {}).unwrap().course;
+    assert!((rough.energy_j / plain.energy_j - 1.0).abs() < 1e-9);
+    // New surfaces are the same, run-in ones are not.
+    assert!((smooth.moments[0].rate.loss_w() / rough.moments[0].rate.loss_w() - 1.0).abs() < 1e-9);
+    assert!(smooth.last.contact_share() < 0.95 * rough.last.contact_share());
+}
+
 /// Takes what is saved, up to a number of times: what a process that is killed leaves behind.
 #[derive(Default)]
 struct Killed {

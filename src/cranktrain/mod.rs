@@ -17,7 +17,7 @@ mod working_cycle;
 
 pub use bearing::{
     BearingFactors, BearingOutput, BearingParameter, BearingPoint, BearingRoom, BearingSetup, BearingShape,
-    GapSensitivity, HeatBalance, JournalBearing, SurfaceField, Tilt,
+    GapSensitivity, HeatBalance, JournalBearing, Smoothing, SurfaceField, Tilt,
 };
 pub use load::{BearingLoad, Drive, LoadTable};
 pub use pressure::CylinderPressure;

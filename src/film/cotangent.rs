@@ -54,7 +54,13 @@ pub(super) fn cotangent(film: &Reynolds, place: &FilmPlace, weights: &FilmWeight
         s: Scalars::of(&film.mesh, &place.site.input),
         bars: vec![CellBar::default(); n],
         scalars: Scalars::default(),
-        out: FilmCotangent { q: vec![0.0; n], rate, gap_m: vec![0.0; n], ..Default::default() },
+        out: FilmCotangent {
+            q: vec![0.0; n],
+            rate,
+            gap_m: vec![0.0; n],
+            shell_left: vec![0.0; place.site.shell_left.len()],
+            ..Default::default()
+        },
     };
     if !weights.residual.is_empty() {
         work.residual(place.rate, weights.residual);
@@ -304,7 +310,11 @@ impl Cotangent<'_> {
             self.out.q[k] += (p + bar.p) * split.p_slope + bar.fill * split.fill_slope;
             self.scalars.eta += eta;
             self.scalars.journal += journal;
-            self.scalars.shell += shell;
+            let left = self.place.site.shell_left.get(k).copied().unwrap_or(1.0);
+            self.scalars.shell += left * shell;
+            if let Some(bar) = self.out.shell_left.get_mut(k) {
+                *bar += self.place.site.input.shell_roughness_m * shell;
+            }
             self.scalars.speed += speed;
         }
         let (mesh, u) = (&self.film.mesh, &self.place.site.input);

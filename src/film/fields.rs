@@ -1,6 +1,6 @@
 //! The scalars the discrete equations are written in and how derivatives by them return to the [`FilmInput`].
 
-use super::{FilmInput, Mesh};
+use super::{FilmInput, FilmSite, Mesh};
 
 /// Scalars of the mesh and the surfaces.
 #[derive(Debug, Clone, Copy, Default)]
@@ -36,6 +36,11 @@ impl Scalars {
             shell: u.shell_roughness_m,
             supply: u.supply_pressure_pa,
         }
+    }
+
+    /// The scalars of a cell in which a share of the shell's roughness is left.
+    pub fn in_cell(&self, site: &FilmSite, k: usize) -> Self {
+        Self { shell: self.shell * site.shell_left.get(k).copied().unwrap_or(1.0), ..*self }
     }
 
     /// Change of the scalars for a change `du` at `u`.

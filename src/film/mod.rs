@@ -62,11 +62,13 @@ pub struct FilmSite<'a> {
     pub journal_angle_rad: f64,
     /// Weight of each cell in [`FilmOutput::rubbing_w_m2`]; empty for none. Not differentiated.
     pub marks: &'a [f64],
+    /// Share of the shell's roughness that is left in every cell; empty for all of it.
+    pub shell_left: &'a [f64],
 }
 
 impl From<FilmInput> for FilmSite<'static> {
     fn from(input: FilmInput) -> Self {
-        Self { input, shape_m: &[], journal_angle_rad: 0.0, marks: &[] }
+        Self { input, shape_m: &[], journal_angle_rad: 0.0, marks: &[], shell_left: &[] }
     }
 }
 
@@ -102,6 +104,8 @@ pub struct FilmChange<'a> {
     pub input: FilmInput,
     /// Change of the shape.
     pub shape_m: &'a [f64],
+    /// Change of the share of the shell's roughness that is left.
+    pub shell_left: &'a [f64],
 }
 
 /// Which parts of a [`FilmTangent`] are wanted.
@@ -155,6 +159,8 @@ pub struct FilmCotangent {
     pub input: FilmInput,
     /// By the gap of every cell: the sensitivity map, and the derivative by the shape. Empty for a film without cells.
     pub gap_m: Vec<f64>,
+    /// By the share of the shell's roughness that is left in every cell; empty where the site does not tell any.
+    pub shell_left: Vec<f64>,
 }
 
 /// A film with its derivatives.

@@ -203,7 +203,8 @@ impl Reynolds {
         gap.resize(q.len(), 0.0);
         Gap::fill(&self.mesh, site, gap);
         cells.resize(q.len(), Cell::default());
-        for ((cell, &h), &q) in cells.iter_mut().zip(&*gap).zip(q) {
+        for (k, ((cell, &h), &q)) in cells.iter_mut().zip(&*gap).zip(q).enumerate() {
+            let s = s.in_cell(site, k);
             cell.set(self, &s, h, self.cavitation.split(q).p + self.cavitation_pressure_pa, walls);
         }
     }

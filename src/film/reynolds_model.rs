@@ -29,11 +29,12 @@ impl FilmModel for Reynolds {
     fn content(&self, site: &FilmSite, q: &[f64], content: &mut [f64]) {
         let u = &site.input;
         Gap::fill(&self.mesh, site, content);
-        for (c, q) in content.iter_mut().zip(q) {
+        for (k, (c, q)) in content.iter_mut().zip(q).enumerate() {
             let split = self.cavitation.split(*q);
             let (density, _) = self.oil.compressibility.at(split.p + self.cavitation_pressure_pa);
             let thickness = self.rough.as_ref().map_or(*c, |rough| {
-                let sigmas = [u.journal_roughness_m, u.shell_roughness_m];
+                let left = site.shell_left.get(k).copied().unwrap_or(1.0);
+                let sigmas = [u.journal_roughness_m, left * u.shell_roughness_m];
                 rough.surfaces.tabulated(*c, sigmas, false).average_gap.value
             });
             *c = split.fill * (density * thickness);

@@ -108,7 +108,7 @@ impl Search<'_> {
         let velocity = self.site.input.velocity_m_s;
         if velocity != [0.0; 2] {
             let input = FilmInput { eccentricity_m: velocity, ..Default::default() };
-            let change = FilmChange { q: &[], rate: &[], input, shape_m: &[] };
+            let change = FilmChange { q: &[], rate: &[], input, shape_m: &[], shell_left: &[] };
             self.rate = self.film.tangent(self.site, q, &self.rate, &change).content;
         }
     }

@@ -61,7 +61,12 @@ impl Moved {
         let dq = |k: usize| change.q.get(k).copied().unwrap_or(0.0);
         let drop: Vec<f64> = (0..n).map(|k| film.cavitation.split(q[k]).p_slope * dq(k)).collect();
         let fill = (0..n).map(|k| film.cavitation.split(q[k]).fill_slope * dq(k)).collect();
-        let slots = |k: usize| [gap[k], drop[k], ds.eta, ds.journal, ds.shell, ds.speed];
+        let shell = |k: usize| {
+            let left = site.shell_left.get(k).copied().unwrap_or(1.0);
+            let changes = change.shell_left.get(k).copied().unwrap_or(0.0);
+            ds.shell * left + site.input.shell_roughness_m * changes
+        };
+        let slots = |k: usize| [gap[k], drop[k], ds.eta, ds.journal, shell(k), ds.speed];
         let of = |needed: bool, jet: fn(&Cell<SLOTS>) -> &super::jet::Jet<SLOTS>| -> Vec<f64> {
             if !needed {
                 return Vec::new();

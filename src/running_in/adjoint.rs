@@ -135,7 +135,7 @@ impl Back<'_> {
             for (g, v) in row.iter().zip(&stage.variables) {
                 self.row[*v] += w * g;
             }
-            by = moved(&by, *w, &model.by_gap(fields));
+            by = moved(&by, *w, &model.by_wear(fields));
         }
         Ok(by)
     }

@@ -110,7 +110,7 @@ impl Forward<'_> {
             for (p, variable) in parameters.iter_mut().zip(&of.variables) {
                 *p = if *variable == v { 1.0 } else { 0.0 };
             }
-            Along { parameters, fields: model.gap_along(&surfaces[v]) }
+            Along { parameters, fields: model.wear_along(&surfaces[v]) }
         };
         let directions: Vec<Along> = (0..self.n).map(direction).collect();
         let loss = [Quantity { output: BearingOutput::Loss.index(), reduction: Reduction::Mean }];

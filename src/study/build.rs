@@ -253,6 +253,10 @@ fn setup(
         supply_pressure_pa: plan.supply.as_ref().map_or(0.0, |s| s.pressure_pa),
         tilt: plan.tilt,
         shapes: plan.shapes.clone(),
+        smoothing: study
+            .running_in
+            .as_ref()
+            .and_then(|r| plan.roughness.as_ref().and_then(|rough| r.smoothing(rough.shell_m))),
         ..BearingSetup::plain(film, load, oil.viscosity)
     }
 }

@@ -128,7 +128,7 @@ impl Work<'_> {
         let model = JournalBearing::new(setup).map_err(|e| e.to_string())?;
         let c = model.setup().diametral_clearance_m / 2.0;
         let (input, shape) = model.still_input([eps * c, 0.0], speed_rad_s);
-        let site = FilmSite { input, shape_m: &shape, journal_angle_rad: 0.0, marks: &[] };
+        let site = FilmSite { input, shape_m: &shape, journal_angle_rad: 0.0, marks: &[], shell_left: &[] };
         let SteadyState { q, output, .. } =
             steady_at(film.as_ref(), &site, None).map_err(|e| e.to_string())?;
         let [fx, fy] = output.force_n;

@@ -7,6 +7,7 @@ use super::file::{AccelerationName, FilmModelName, RunningInFile, RunningInGoalN
 use super::lexicon::{FASTEST_RAD_S, LARGEST_FACTOR, LONGEST_S};
 use super::plans::{FilmPlan, OperatingPoint};
 use super::sections::worst_case;
+use crate::cranktrain::Smoothing;
 use crate::running_in::{RunningInQuantity, Settled};
 
 const PATH: &str = "running_in";
@@ -23,6 +24,9 @@ pub(super) struct RunningInPlan {
     pub tolerance_m: f64,
     pub journal_share: f64,
     pub max_blocks: usize,
+    /// Share of the shell's roughness that is left after long wear, and the depth that takes it there, m (none: its roughness).
+    roughness_left: f64,
+    smoothing_depth_m: Option<f64>,
     /// When a stage ends before its time.
     pub settled: Option<Settled>,
     /// Whether cycles are predicted where that is good enough.
@@ -116,6 +120,15 @@ pub(super) fn running_in(
     Some(plan)
 }
 
+impl RunningInPlan {
+    /// How wear smooths a shell.
+    pub fn smoothing(&self, shell_m: f64) -> Option<Smoothing> {
+        let depth_m = self.smoothing_depth_m.unwrap_or(shell_m);
+        let smooths = self.roughness_left < 1.0 && depth_m > 0.0;
+        smooths.then_some(Smoothing { left: self.roughness_left, depth_m })
+    }
+}
+
 /// What cannot stand beside a search for a running-in design.
 fn others(file: &StudyFile) -> Vec<&'static str> {
     let polish = file.optimiser.value().and_then(|o| o.polish.value()) == Some(&true);
@@ -150,6 +163,15 @@ fn march_plan(r: &mut RunningInFile, faults: &mut Faults) -> RunningInPlan {
         "above 0 and below 1: a share of the loss",
     );
     faults.range(depth_m, &at("settled_wear_per_hour"), sensible, "above zero and at most 100 um");
+    let roughness_left = faults.or(&mut r.roughness_left, &at("roughness_left"), 1.0);
+    let smoothing_depth_m = faults.get(&r.smoothing_depth, &at("smoothing_depth")).map(|v| v.si());
+    let words = "above 0 and at most 1: a share of the roughness";
+    faults.range(Some(roughness_left), &at("roughness_left"), |v| v > 0.0 && v <= 1.0, words);
+    faults.range(smoothing_depth_m, &at("smoothing_depth"), sensible, "above zero and at most 100 um");
+    if roughness_left == 1.0 {
+        let why = "has no effect while running_in.roughness_left is 1";
+        faults.unused(&r.smoothing_depth, &at("smoothing_depth"), why);
+    }
     if r.settled_loss_change_per_hour.is_absent() != r.settled_wear_per_hour.is_absent() {
         let words = "a stage ends early when loss and surfaces change little: give both settled_loss_change_per_hour and settled_wear_per_hour";
         faults.add(PATH, words);
@@ -159,6 +181,8 @@ fn march_plan(r: &mut RunningInFile, faults: &mut Faults) -> RunningInPlan {
         tolerance_m,
         journal_share,
         max_blocks,
+        roughness_left,
+        smoothing_depth_m,
         settled: loss_share.zip(depth_m).map(|(share, depth)| Settled {
             loss_share_per_s: share / HOUR_S,
             depth_m_per_s: depth / HOUR_S,

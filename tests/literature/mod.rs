@@ -90,7 +90,13 @@ impl Slider {
     }
 
     fn site(&self) -> FilmSite<'_> {
-        FilmSite { input: self.input, shape_m: &self.shape_m, journal_angle_rad: 0.0, marks: &[] }
+        FilmSite {
+            input: self.input,
+            shape_m: &self.shape_m,
+            journal_angle_rad: 0.0,
+            marks: &[],
+            shell_left: &[],
+        }
     }
 
     /// Gap of a column.

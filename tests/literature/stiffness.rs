@@ -39,9 +39,10 @@ pub(super) fn response(film: &Reynolds, u: &FilmInput, q: &mut Vec<f64>) -> Opti
         // The velocity enters through the rate of the content: that of the gap, in full cells.
         let mut unit = FilmInput::default();
         unit.eccentricity_m[j] = 1.0;
-        let moved = FilmChange { q: &[], rate: &[], input: unit, shape_m: &[] };
+        let moved = FilmChange { q: &[], rate: &[], input: unit, shape_m: &[], shell_left: &[] };
         let rate = film.tangent(&site, &state.q, &[], &moved).content;
-        let change = FilmChange { q: &[], rate: &rate, input: FilmInput::default(), shape_m: &[] };
+        let change =
+            FilmChange { q: &[], rate: &rate, input: FilmInput::default(), shape_m: &[], shell_left: &[] };
         film.tangent(&site, &state.q, &vec![0.0; n], &change).residual
     };
     let column = |j: usize| linear.columns[j * n..(j + 1) * n].to_vec();

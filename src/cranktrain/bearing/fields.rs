@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! u = (scalars of the film's input | film temperature | load factor | speed | gap added by the shell, per cell
-//!      | gap added by the journal, per cell of a grid that turns with it | coefficients of shapes that turn)
+//!      | gap added by the journal, per cell of a grid that turns with it | coefficients of shapes that turn
+//!      | share of the shell's roughness that wear has left, per cell, if it smooths)
 //! ```
 //!
 //! A derivative by the fifth and sixth part is the derivative by the local gap: where on the shell, and where on the
@@ -37,6 +38,8 @@ const SCALARS: usize = INPUTS + 3;
 struct Parts {
     cells: usize,
     turning: usize,
+    /// Cells whose roughness wear changes.
+    smoothed: usize,
 }
 
 impl Parts {
@@ -51,15 +54,23 @@ impl Parts {
     fn turning(self) -> std::ops::Range<usize> {
         SCALARS + 2 * self.cells..SCALARS + 2 * self.cells + self.turning
     }
+
+    fn smoothed(self) -> std::ops::Range<usize> {
+        self.turning().end..self.turning().end + self.smoothed
+    }
 }
 
 impl JournalBearing {
     fn parts(&self) -> Parts {
-        Parts { cells: self.setup.film.mesh().map_or(0, Mesh::cells), turning: self.shapes.turning_count() }
+        Parts {
+            cells: self.setup.film.mesh().map_or(0, Mesh::cells),
+            turning: self.shapes.turning_count(),
+            smoothed: self.shell_left.len(),
+        }
     }
 
     pub(super) fn field_count(&self) -> usize {
-        self.parts().turning().end
+        self.parts().smoothed().end
     }
 
     /// `u_p dp`.
@@ -90,7 +101,7 @@ impl JournalBearing {
         du[FILM_TEMPERATURE] = temperature;
         [du[LOAD_FACTOR], du[SPEED]] = operation;
         let (head, turning) = du.split_at_mut(parts.turning().start);
-        self.shapes.along(dp, &mut head[parts.shell()], turning);
+        self.shapes.along(dp, &mut head[parts.shell()], &mut turning[..parts.turning]);
     }
 
     /// `p += u_p^T u`.
@@ -123,7 +134,7 @@ impl JournalBearing {
     pub(super) fn seen_along(&self, angle_rad: f64, du: &[f64]) -> (FilmInput, Vec<f64>) {
         let (parts, moved) = (self.parts(), |v: &[f64]| v.iter().any(|d| *d != 0.0));
         let input = FilmInput::from_array(std::array::from_fn(|k| du[k]));
-        if !moved(&du[SCALARS..]) {
+        if !moved(&du[SCALARS..parts.turning().end]) {
             return (input, Vec::new());
         }
         let mut shape = du[parts.shell()].to_vec();
@@ -136,6 +147,11 @@ impl JournalBearing {
         (input, shape)
     }
 
+    /// The change of the share of the shell's roughness that is left.
+    pub(super) fn left_along<'a>(&self, du: &'a [f64]) -> &'a [f64] {
+        &du[self.parts().smoothed()]
+    }
+
     /// Adds derivatives by what the film sees to those by the fields.
     pub(super) fn seen_back(&self, angle_rad: f64, bar: &FilmCotangent, u: &mut [f64]) {
         let parts = self.parts();
@@ -143,25 +159,42 @@ impl JournalBearing {
         if bar.gap_m.is_empty() {
             return;
         }
+        u[parts.smoothed()].iter_mut().zip(&bar.shell_left).for_each(|(u, b)| *u += b);
         u[parts.shell()].iter_mut().zip(&bar.gap_m).for_each(|(u, b)| *u += b);
         let journal = &mut u[parts.journal()];
         self.shapes.grid.turn(angle_rad, |shell, at, share| journal[at] += share * bar.gap_m[shell]);
         self.shapes.turned_back(angle_rad, &bar.gap_m, &mut u[parts.turning()]);
     }
 
-    /// Derivatives by the gap of every cell of shell and journal, in derivatives by the fields: those by [`BearingSetup::worn_m`].
+    /// Derivatives by the material worn off shell and journal ([`BearingSetup::worn_m`]), in derivatives by the fields: by the gap
+    /// it adds, and by the roughness it leaves.
     ///
     /// [`BearingSetup::worn_m`]: super::BearingSetup::worn_m
-    pub fn by_gap(&self, fields: &[f64]) -> SurfaceField {
-        let parts = self.parts();
-        SurfaceField { shell: fields[parts.shell()].to_vec(), journal: fields[parts.journal()].to_vec() }
+    pub fn by_wear(&self, fields: &[f64]) -> SurfaceField {
+        let (parts, mut shell) = (self.parts(), fields[self.parts().shell()].to_vec());
+        for ((by, slope), left) in
+            shell.iter_mut().zip(self.smoothing_slopes()).zip(&fields[parts.smoothed()])
+        {
+            *by += slope * left;
+        }
+        SurfaceField { shell, journal: fields[parts.journal()].to_vec() }
+    }
+
+    /// What more wear does to the roughness left in every cell, 1/m; empty if it does nothing.
+    fn smoothing_slopes(&self) -> Vec<f64> {
+        let of = |s: super::Smoothing| self.setup.worn_m.shell.iter().map(|w| s.at(*w).1).collect();
+        self.setup.smoothing.map_or_else(Vec::new, of)
     }
 
     /// The change of the fields that more material worn off is.
-    pub fn gap_along(&self, worn_m: &SurfaceField) -> Vec<f64> {
+    pub fn wear_along(&self, worn_m: &SurfaceField) -> Vec<f64> {
         let (parts, mut du) = (self.parts(), vec![0.0; self.field_count()]);
         du[parts.shell()].iter_mut().zip(&worn_m.shell).for_each(|(u, w)| *u += w);
         du[parts.journal()].iter_mut().zip(&worn_m.journal).for_each(|(u, w)| *u += w);
+        for ((u, slope), w) in du[parts.smoothed()].iter_mut().zip(self.smoothing_slopes()).zip(&worn_m.shell)
+        {
+            *u += slope * w;
+        }
         du
     }
 

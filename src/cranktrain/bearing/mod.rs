@@ -28,7 +28,7 @@ pub use fields::GapSensitivity;
 pub use heat::HeatBalance;
 pub use model::{BearingFactors, BearingRoom};
 pub use sensitive::BearingPoint;
-pub use setup::{BearingOutput, BearingParameter, BearingSetup, BearingShape, SurfaceField, Tilt};
+pub use setup::{BearingOutput, BearingParameter, BearingSetup, BearingShape, Smoothing, SurfaceField, Tilt};
 
 use super::Drive;
 use crate::dae::{At, InvalidParameters};
@@ -45,6 +45,8 @@ pub struct JournalBearing {
     viscosity_slope: f64,
     shapes: Shapes,
     heat: Option<HeatEquations>,
+    /// Share of the shell's roughness that wear has left in every cell; empty for all of it.
+    shell_left: Vec<f64>,
     layout: Layout,
 }
 
@@ -99,7 +101,9 @@ impl JournalBearing {
         let heat =
             setup.heat.map(|balance| HeatEquations::of(balance, &setup, viscosity_slope / viscosity_pa_s));
         let shapes = Shapes::of(&setup);
-        Ok(Self { p, viscosity_pa_s, viscosity_slope, shapes, heat, layout, setup })
+        let left = |s: Smoothing| setup.worn_m.shell.iter().map(|w| s.at(*w).0).collect();
+        let shell_left = setup.smoothing.map_or_else(Vec::new, left);
+        Ok(Self { p, viscosity_pa_s, viscosity_slope, shapes, heat, shell_left, layout, setup })
     }
 
     /// What defines this bearing.
@@ -160,7 +164,7 @@ impl JournalBearing {
     fn site<'a>(&'a self, t_s: f64, input: FilmInput, shape: &'a mut Vec<f64>) -> FilmSite<'a> {
         let journal_angle_rad = self.drive(t_s).journal_angle_rad;
         let (shape_m, marks) = self.shapes.at(journal_angle_rad, shape);
-        FilmSite { input, shape_m, journal_angle_rad, marks }
+        FilmSite { input, shape_m, journal_angle_rad, marks, shell_left: &self.shell_left }
     }
 
     fn input(&self, t_s: f64, z: &[f64], velocity_m_s: [f64; 2]) -> FilmInput {

@@ -23,9 +23,9 @@ pub struct BearingPoint {
 }
 
 impl BearingPoint {
-    fn site(&self) -> FilmSite<'_> {
+    fn site<'a>(&'a self, shell_left: &'a [f64]) -> FilmSite<'a> {
         let Self { input, shape_m, marks, journal_angle_rad, .. } = self;
-        FilmSite { input: *input, shape_m, marks, journal_angle_rad: *journal_angle_rad }
+        FilmSite { input: *input, shape_m, marks, journal_angle_rad: *journal_angle_rad, shell_left }
     }
 }
 
@@ -166,10 +166,11 @@ impl SensitiveDae for JournalBearing {
     }
 
     fn push(&self, point: &BearingPoint, at: At, du: &[f64], residual: &mut [f64], memory: &mut [f64]) {
-        let (l, n, site) = (self.layout, self.layout.n, point.site());
+        let (l, n, site) = (self.layout, self.layout.n, point.site(&self.shell_left));
         let (mut input, shape_m) = self.seen_along(point.journal_angle_rad, du);
         let faster = self.faster(at, du[SPEED], &mut input);
-        let change = FilmChange { q: &[], rate: &faster, input, shape_m: &shape_m };
+        let change =
+            FilmChange { q: &[], rate: &faster, input, shape_m: &shape_m, shell_left: self.left_along(du) };
         let d = self.setup.film.tangent_at(&self.place(point, &site, at), &change, Wanted::ALL);
         residual.fill(0.0);
         memory.fill(0.0);
@@ -186,7 +187,7 @@ impl SensitiveDae for JournalBearing {
     }
 
     fn pull(&self, point: &BearingPoint, at: At, v: &[f64], w: &[f64], u: &mut [f64]) {
-        let (l, n, site) = (self.layout, self.layout.n, point.site());
+        let (l, n, site) = (self.layout, self.layout.n, point.site(&self.shell_left));
         let (sign, row) = l.force_row();
         let mut output =
             FilmOutput { force_n: [sign * v[n + row], sign * v[n + row + 1]], ..Default::default() };
@@ -204,13 +205,19 @@ impl SensitiveDae for JournalBearing {
     }
 
     fn output_tangent(&self, point: &BearingPoint, at: At, direction: Direction, dy: &mut [f64]) {
-        let (n, site) = (self.layout.n, point.site());
+        let (n, site) = (self.layout.n, point.site(&self.shell_left));
         let (mut input, shape_m) = self.seen_along(point.journal_angle_rad, direction.u);
         let [width, diameter] = [input.width_m, input.diameter_m];
         self.add_motions(direction.z, &mut input);
         input.velocity_m_s = [direction.rate[n], direction.rate[n + 1]];
         self.faster(at, direction.u[SPEED], &mut input);
-        let change = FilmChange { q: &direction.z[..n], rate: &[], input, shape_m: &shape_m };
+        let change = FilmChange {
+            q: &direction.z[..n],
+            rate: &[],
+            input,
+            shape_m: &shape_m,
+            shell_left: self.left_along(direction.u),
+        };
         let wanted = Wanted { residual: false, content: false, output: true };
         let d = self.setup.film.tangent_at(&self.place(point, &site, at), &change, wanted);
         self.outputs_of(at.t_s, &d.output, dy);
@@ -236,11 +243,17 @@ impl SensitiveDae for JournalBearing {
         share: f64,
         sums: &mut [f64],
     ) {
-        let (site, cells) = (point.site(), sums.len() / 2);
+        let (site, cells) = (point.site(&self.shell_left), sums.len() / 2);
         let (mut input, shape_m) = self.seen_along(point.journal_angle_rad, direction.u);
         self.add_motions(direction.z, &mut input);
         self.faster(at, direction.u[SPEED], &mut input);
-        let change = FilmChange { q: &[], rate: &[], input, shape_m: &shape_m };
+        let change = FilmChange {
+            q: &[],
+            rate: &[],
+            input,
+            shape_m: &shape_m,
+            shell_left: self.left_along(direction.u),
+        };
         let wanted = Wanted { residual: false, content: false, output: true };
         let d = self.setup.film.tangent_at(&self.place(point, &site, at), &change, wanted);
         let mut contact = vec![0.0; cells];
@@ -258,7 +271,7 @@ impl SensitiveDae for JournalBearing {
     }
 
     fn output_cotangent(&self, point: &BearingPoint, at: At, w: &[f64], out: Cotangent) {
-        let (n, site) = (self.layout.n, point.site());
+        let (n, site) = (self.layout.n, point.site(&self.shell_left));
         let weights = FilmWeights { residual: &[], content: &[], output: self.film_weights(w) };
         let mut bar = self.setup.film.cotangent_at(&self.place(point, &site, at), &weights);
         let load = w[BearingOutput::SpecificLoad.index()] * self.specific_load_pa(at.t_s);

@@ -117,6 +117,23 @@ pub struct SurfaceField {
     pub journal: Vec<f64>,
 }
 
+/// How wear smooths a surface: of its roughness the share `r + (1 - r) exp(-w / l)` is left where the depth `w` was worn off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Smoothing {
+    /// What is left after long wear, `r`, 0 to 1.
+    pub left: f64,
+    /// Depth that takes the surface most of the way, `l`, m.
+    pub depth_m: f64,
+}
+
+impl Smoothing {
+    /// The share that is left at a depth, and its derivative by the depth, 1/m.
+    pub fn at(&self, depth_m: f64) -> (f64, f64) {
+        let gone = (1.0 - self.left) * (-depth_m / self.depth_m).exp();
+        (self.left + gone, -gone / self.depth_m)
+    }
+}
+
 /// Everything that defines a bearing apart from what is varied.
 #[derive(Clone)]
 pub struct BearingSetup {
@@ -162,6 +179,8 @@ pub struct BearingSetup {
     pub worn_m: Arc<SurfaceField>,
     /// Weights in [`BearingOutput::Rubbing`].
     pub marks: Arc<SurfaceField>,
+    /// How wear smooths the shell; none if its roughness stays.
+    pub smoothing: Option<Smoothing>,
     /// Which of the above are the parameters `p`, in order.
     pub parameters: Vec<BearingParameter>,
 }
@@ -191,6 +210,7 @@ impl BearingSetup {
             shapes: Vec::new(),
             worn_m: Arc::default(),
             marks: Arc::default(),
+            smoothing: None,
             parameters: Vec::new(),
         }
     }

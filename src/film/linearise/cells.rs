@@ -84,7 +84,7 @@ impl Cells {
             self.fill[k] = split.fill;
             self.fill_slope[k] = split.fill_slope;
         }
-        if self.rough { self.set_rough(film, s) } else { self.set_smooth(film, s) }
+        if self.rough { self.set_rough(film, site, s) } else { self.set_smooth(film, s) }
     }
 
     fn resize(&mut self, n: usize, film: &Reynolds) {
@@ -130,10 +130,16 @@ impl Cells {
         }
     }
 
-    fn set_rough(&mut self, film: &Reynolds, s: &Scalars) {
+    fn set_rough(&mut self, film: &Reynolds, site: &FilmSite, s: &Scalars) {
         let mut cell = Cell::<2>::default();
         for k in 0..self.gap.len() {
-            cell.set(film, s, self.gap[k], self.pressure[k] + film.cavitation_pressure_pa, false);
+            cell.set(
+                film,
+                &s.in_cell(site, k),
+                self.gap[k],
+                self.pressure[k] + film.cavitation_pressure_pa,
+                false,
+            );
             let slope = self.pressure_slope[k];
             self.around.set(k, &cell.around, slope);
             self.across.set(k, &cell.across, slope);

@@ -201,6 +201,10 @@ section! {
         max_time_to_run_in: Duration,
         /// Whether the search of a running-in design begins with a cheap approximation of the march (P_alpha). Default true.
         approximate_first: bool,
+        /// Share of the shell's roughness that is left where much was worn off. Default 1: the roughness stays.
+        roughness_left: f64,
+        /// Wear depth that takes the shell most of the way there: what goes falls by exp(-depth / smoothing_depth). Default: the shell's roughness.
+        smoothing_depth: Length,
         /// A stage ends before its time when the friction loss changes by less than this share per hour, and the wear depth by less than settled_wear_per_hour. Default: no stage does.
         settled_loss_change_per_hour: f64,
         /// See settled_loss_change_per_hour.
