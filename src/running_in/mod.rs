@@ -12,7 +12,11 @@
 //! the rubbing of every cell are what the depth there is worth later on. Block lengths are frozen in a derivative, like the steps
 //! of a cycle.
 //!
-//! Deliberately not here: study files, words, optimisation; roughness that changes with wear.
+//! [`march_predicted`] solves fewer cycles: it predicts them from a basis of earlier ones and checks where it gets to. [`approximation`]
+//! makes of a march one of few blocks, `P_alpha`. Where much is worn off the shell may become smooth (see
+//! [`Smoothing`](crate::cranktrain::Smoothing)).
+//!
+//! Deliberately not here: study files, words, optimisation; derivatives of a predicted march, which would be those of its basis.
 
 mod adjoint;
 mod alpha;

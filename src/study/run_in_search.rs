@@ -16,6 +16,8 @@ use crate::running_in::{Stage, weights};
 const WORTHWHILE: f64 = 0.5;
 /// Blocks are right for a design if a march of its own finds values no farther apart than this.
 const AGREES: f64 = 1e-3;
+/// Tolerance of the leg with the approximation, which errs by more.
+const NEAR: f64 = 1e-3;
 /// Legs with the march itself at most.
 const MOST_LEGS: usize = 3;
 
@@ -129,7 +131,8 @@ impl<'a, 'r> Legs<'a, 'r> {
             simulations: self.options.budget.simulations.map(|n| n.div_ceil(2)),
             seconds: self.options.budget.seconds.map(|s| 0.5 * s),
         };
-        let options = SearchOptions { budget: half, ..*self.options };
+        let mut options = SearchOptions { budget: half, ..*self.options };
+        options.settings.tolerance = options.settings.tolerance.max(NEAR);
         let near = search(&rough, start, &options).map_err(|e| e.to_string())?;
         self.tell("optimising with the march itself");
         Ok((near, rough))

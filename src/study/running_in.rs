@@ -97,7 +97,7 @@ pub(super) fn running_in(
         faults.unused(&r.max_time_to_run_in, &at("max_time_to_run_in"), why);
         faults.unused(&r.approximate_first, &at("approximate_first"), why_first);
     } else {
-        plan.approximate_first = faults.or(&mut r.approximate_first, &at("approximate_first"), true);
+        plan.approximate_first = faults.or(&mut r.approximate_first, &at("approximate_first"), false);
         for key in others {
             faults.add(&at("minimise"), format!("does not go together with {key}; remove one of them"));
         }

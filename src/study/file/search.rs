@@ -199,7 +199,7 @@ section! {
         max_final_loss: Power,
         /// Longest time constant of any bearing's loss in the last stage. For a running-in design.
         max_time_to_run_in: Duration,
-        /// Whether the search of a running-in design begins with a cheap approximation of the march (P_alpha). Default true.
+        /// Whether the search of a running-in design begins with a cheap approximation of the march (P_alpha), where that has at most half of its blocks. Default false.
         approximate_first: bool,
         /// Share of the shell's roughness that is left where much was worn off. Default 1: the roughness stays.
         roughness_left: f64,
