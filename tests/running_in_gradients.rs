@@ -50,7 +50,9 @@ fn programme(
     smoothing: Option<Smoothing>,
     memory_bytes: usize,
 ) -> Programme {
-    let study = leaning(&[]);
+    let relief = "[[bearings.big_end.shapes]]\nname = \"edge\"\nkind = \"edge-relief\"\ndepth = \"0.2 um\"\n\
+        length_share = 0.3\n\n[bearings.big_end.roughness]";
+    let study = leaning(&[("[bearings.big_end.roughness]", relief)]);
     let (at, orbit) = stage(&study, 900.0);
     let setup = BearingSetup { parameters: own.to_vec(), smoothing, ..at.model.setup().clone() };
     let model = JournalBearing::new(setup).unwrap();
@@ -103,7 +105,7 @@ impl Programme {
         let mut worst = 0.0f64;
         for (q, (found, adj)) in self.gradient(name).iter().zip(adj).enumerate() {
             for (v, (d, a)) in found.iter().zip(adj).enumerate() {
-                let miss = ((d - a).abs() - self.noise(q, v)).max(0.0) / a.abs();
+                let miss = ((d - a).abs() - self.noise(q, v)).max(0.0) / a.abs().max(f64::MIN_POSITIVE);
                 println!("{:?} by {}: ADJ {a:.8e}, {name:?} {miss:.1e}", ALL[q], self.names[v]);
                 worst = worst.max(miss);
             }
@@ -114,21 +116,31 @@ impl Programme {
 
 /// Half of the shell's roughness goes with the first tenths of a micrometre.
 const SMOOTHS: Option<Smoothing> = Some(Smoothing { left: 0.5, depth_m: 2e-7 });
+const MORE: [BearingParameter; 6] = [
+    BearingParameter::Width,
+    BearingParameter::Diameter,
+    BearingParameter::JournalRoughness,
+    BearingParameter::ShellRoughness,
+    BearingParameter::Tilt(0),
+    BearingParameter::Shape(0, 0),
+];
 const OWN: [BearingParameter; 3] =
     [BearingParameter::Width, BearingParameter::DiametralClearance, BearingParameter::InletTemperature];
 
 #[test]
 fn tra_and_adj_agree_on_every_quantity_of_a_running_in() {
-    for (journal_share, smoothing) in [(0.0, None), (0.3, SMOOTHS)] {
-        let at = programme(&OWN, journal_share, smoothing, 1 << 30);
+    for (journal_share, smoothing, own) in [(0.0, None, &OWN[..]), (0.3, SMOOTHS, &MORE[..])] {
+        let at = programme(own, journal_share, smoothing, 1 << 30);
         let [tra, adj] = [EngineName::Tra, EngineName::Adj].map(|e| at.gradient(e));
         for (q, (tra, adj)) in tra.iter().zip(&adj).enumerate() {
             for (v, (t, a)) in tra.iter().zip(adj).enumerate() {
                 let miss = (t - a).abs() / a.abs();
                 println!("share {journal_share}, {:?} by {}: {a:.9e} {miss:.1e}", ALL[q], at.names[v]);
-                assert!(miss < 1e-8, "{:?} by {}: {t} {a}", ALL[q], at.names[v]);
+                assert!((t - a).abs() <= 1e-9 * a.abs(), "{:?} by {}: {t} {a}", ALL[q], at.names[v]);
             }
         }
+        // Where wear smooths the shell the loss falls, and its time constant has a gradient.
+        assert!(smoothing.is_none() || adj[5].iter().all(|g| *g != 0.0), "{:?}", adj[5]);
     }
 }
 
@@ -136,12 +148,12 @@ fn tra_and_adj_agree_on_every_quantity_of_a_running_in() {
 fn differences_agree_with_adj_on_every_quantity_of_a_running_in() {
     let at = programme(&OWN[1..], 0.0, SMOOTHS, 1 << 30);
     let worst = at.misses(EngineName::Cen, &at.gradient(EngineName::Adj));
-    assert!(worst < 1e-4, "CEN {worst:.1e}");
+    assert!(worst < 2e-5, "CEN {worst:.1e}");
     let at = programme(&OWN[1..2], 0.3, None, 1 << 30);
     let adj = at.gradient(EngineName::Adj);
     for name in [EngineName::Fw, EngineName::Bw] {
         let worst = at.misses(name, &adj);
-        assert!(worst < 3e-3, "{name:?} {worst:.1e}");
+        assert!(worst < 1e-3, "{name:?} {worst:.1e}");
     }
 }
 
@@ -152,7 +164,7 @@ fn cycles_that_were_not_kept_are_settled_again_to_the_same_gradient() {
     for name in [EngineName::Adj, EngineName::Tra] {
         let (a, b) = (kept.gradient(name), dropped.gradient(name));
         for (a, b) in a.iter().flatten().zip(b.iter().flatten()) {
-            assert!((a - b).abs() < 1e-6 * a.abs(), "{a} {b}");
+            assert!((a - b).abs() <= 1e-6 * a.abs(), "{a} {b}");
         }
     }
 }

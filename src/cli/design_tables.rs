@@ -132,11 +132,12 @@ fn running_in(report: &Report) -> Option<String> {
     }
     let mut words = String::new();
     if let Some(m) = &r.minimised {
-        let (start, optimum, saving) = (short(m.start), short(m.optimum), short(m.saving_percent));
+        let (start, optimum) = (short(m.start), short(m.optimum));
+        let saving = m
+            .saving_percent
+            .map_or_else(|| ", which breaks its limits".to_owned(), |p| format!(", {} % saved", short(p)));
         let (what, unit) = (&m.quantity, &m.unit);
-        words += &format!(
-            "\n{what}: {start} {unit} at the start, {optimum} {unit} at the design, {saving} % saved"
-        );
+        words += &format!("\n{what}: {start} {unit} at the start, {optimum} {unit} at the design{saving}");
     }
     if let Some(a) = &r.approximation {
         let design =

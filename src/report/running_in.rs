@@ -32,8 +32,8 @@ pub struct MinimisedReport {
     pub optimum: f64,
     /// Unit of both.
     pub unit: String,
-    /// Saving, per cent.
-    pub saving_percent: f64,
+    /// Saving, per cent; none where the design breaks its limits.
+    pub saving_percent: Option<f64>,
 }
 
 /// The leg of a search with `P_alpha`: a weighted mean over a few moments of the march in place of the march itself.
@@ -91,6 +91,8 @@ pub struct StageReport {
     pub speed_rpm: f64,
     /// Factor on the load.
     pub load_factor: f64,
+    /// Temperature of the oil at the inlet, degC; none for that of the design.
+    pub oil_inlet_temperature_c: Option<f64>,
 }
 
 /// Running-in of one bearing.
@@ -110,11 +112,13 @@ pub struct BearingRunningIn {
     pub final_contact_share: f64,
     /// Mean over the programme, W: the friction loss that takes wear into account.
     pub mean_loss_w: f64,
+    /// How long the programme took, h: less than its stages if some had nothing more to tell.
+    pub duration_h: f64,
     /// Energy lost to friction over the programme, kJ.
     pub energy_lost_kj: f64,
     /// Volume worn off, mm3.
     pub wear_volume_mm3: f64,
-    /// Largest depth worn off the shell, um.
+    /// Largest depth worn off shell or journal, um.
     pub max_wear_depth_um: f64,
     /// Time constant with which the loss falls in the last stage, h; none if it does not.
     pub time_to_run_in_h: Option<f64>,
@@ -209,7 +213,7 @@ pub struct RunningInBlock {
     pub min_film_thickness_um: f64,
     /// Largest contact pressure of the cycle, MPa.
     pub max_contact_pressure_mpa: f64,
-    /// Largest depth worn off the shell until then, um.
+    /// Largest depth worn off either surface until then, um.
     pub max_wear_depth_um: f64,
     /// Volume worn off until then, mm3.
     pub wear_volume_mm3: f64,

@@ -35,6 +35,6 @@ pub use alpha::{approximation, weights};
 pub use gradient::{MarchEngine, RunningInGradient, march_gradient};
 pub use march::{Block, Course, End, March, Moment, march, replay};
 pub use predicted::{PredictedMarch, march_predicted};
-pub use quantity::{RunningInQuantity, Worth, worn_volume_m3};
+pub use quantity::{RunningInQuantity, Worth, falls, worn_volume_m3};
 pub use rate::{Rate, settled_with_wear};
 pub use stage::{MarchError, MarchOptions, Settled, Stage};

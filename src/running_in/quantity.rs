@@ -7,6 +7,9 @@ use crate::film::Mesh;
 use crate::math::PowerMean;
 use std::f64::consts::PI;
 
+/// A fall of the loss by less than this share of it is none.
+const LEAST_FALL: f64 = 1e-6;
+
 /// What can be asked of a running-in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RunningInQuantity {
@@ -18,10 +21,10 @@ pub enum RunningInQuantity {
     FinalLoss,
     /// Volume worn off both surfaces, m3.
     WearVolume,
-    /// Smooth maximum (of the given sharpness) of the depth worn off the shell, m.
+    /// Smooth maximum (of the given sharpness) of the depth worn off shell and journal, m.
     MaxDepth(f64),
     /// Time constant with which the loss falls in the last stage, from its value `P_0` at the beginning of it to `P_N` in the end:
-    /// `(E - P_N T) / (P_0 - P_N)` with the stage's own energy and length, s.
+    /// `(E - P_N T) / (P_0 - P_N)` with the stage's own energy and length, s; 0 where the loss does not fall.
     TimeToRunIn,
 }
 
@@ -51,6 +54,11 @@ pub fn worn_volume_m3(worn_m: &SurfaceField, model: &JournalBearing) -> f64 {
     depth_sum_m(worn_m) * cell_area_m2(model)
 }
 
+/// Depths of all cells of both surfaces, m.
+fn depths(worn_m: &SurfaceField) -> impl Iterator<Item = f64> + Clone {
+    worn_m.shell.iter().chain(&worn_m.journal).copied()
+}
+
 /// Sum of the depths of all cells of both surfaces, m.
 fn depth_sum_m(worn_m: &SurfaceField) -> f64 {
     worn_m.shell.iter().chain(&worn_m.journal).sum()
@@ -75,6 +83,11 @@ pub(super) fn area_slope(last: &Stage, variables: usize) -> Vec<f64> {
     slope
 }
 
+/// Whether a loss falls by more than settling leaves of it.
+pub fn falls(first_w: f64, last_w: f64) -> bool {
+    first_w - last_w > LEAST_FALL * first_w
+}
+
 impl RunningInQuantity {
     /// Its value.
     pub fn value(self, course: &Course, model: &JournalBearing) -> f64 {
@@ -84,10 +97,8 @@ impl RunningInQuantity {
             Self::MeanLoss => course.energy_j / course.duration_s,
             Self::FinalLoss => last,
             Self::WearVolume => worn_volume_m3(&course.worn_m, model),
-            Self::MaxDepth(sharpness) => {
-                PowerMean::maximum(sharpness).of(course.worn_m.shell.iter().copied()).value()
-            }
-            Self::TimeToRunIn if first == last => 0.0,
+            Self::MaxDepth(sharpness) => PowerMean::maximum(sharpness).of(depths(&course.worn_m)).value(),
+            Self::TimeToRunIn if !falls(first, last) => 0.0,
             Self::TimeToRunIn => {
                 let (energy_j, duration_s) = (course.last_energy_j, course.last_duration_s);
                 (energy_j - last * duration_s) / (first - last)
@@ -117,11 +128,12 @@ impl RunningInQuantity {
                 worth.area = depth_sum_m(&course.worn_m);
             }
             Self::MaxDepth(sharpness) => {
-                let mean = PowerMean::maximum(sharpness).of(course.worn_m.shell.iter().copied());
-                let slopes = course.worn_m.shell.iter().map(|w| mean.derivative(*w));
-                worth.worn.shell = slopes.collect();
+                let mean = PowerMean::maximum(sharpness).of(depths(&course.worn_m));
+                let slopes = |field: &[f64]| field.iter().map(|w| mean.derivative(*w)).collect();
+                worth.worn.shell = slopes(&course.worn_m.shell);
+                worth.worn.journal = slopes(&course.worn_m.journal);
             }
-            Self::TimeToRunIn if first == last => {}
+            Self::TimeToRunIn if !falls(first, last) => {}
             Self::TimeToRunIn => {
                 let (fall, value) = (first - last, self.value(course, model));
                 let (_, duration_s) = (course.last_energy_j, course.last_duration_s);

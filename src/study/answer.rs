@@ -125,7 +125,10 @@ pub(super) fn objective(study: &Study, found: &Searched, known: &Known) -> Objec
     });
     ObjectiveReport {
         quantity: objective_words(study),
-        start_violation: start_violation(study, plan),
+        start_violation: match &found.run_in {
+            Some(end) => Some(end.start_violation).filter(|v| v.is_finite()),
+            None => start_violation(study, plan),
+        },
         start,
         optimum: Some(optimum),
         saving_percent: start.map(|s| 100.0 * (1.0 - optimum.total_w / s.total_w)),

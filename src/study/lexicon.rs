@@ -105,10 +105,7 @@ impl<'a> Lexicon<'a> {
                 faults.add(path, "has no effect: oil.dynamic_viscosity is the same at every temperature");
             }
             if first.stage.is_some() && !self.runs_in {
-                faults.add(
-                    path,
-                    "has no effect on the design: give running_in.minimise to search one for running-in",
-                );
+                faults.add(path, "belongs to a running-in design only: give running_in.minimise");
             }
             return Some(found);
         }

@@ -20,6 +20,14 @@ pub(super) fn methods(study: &Study) -> Vec<String> {
         "Smooth extrema: power norm, on the safe side of the exact extremum",
     ];
     list.extend(always.map(str::to_owned));
+    if let Some(r) = &study.running_in {
+        let how = if r.predicted {
+            "cycles predicted by proper orthogonal decomposition (method of snapshots, Sirovich 1987) and checked"
+        } else {
+            "blocks by Heun's method"
+        };
+        list.push(format!("Running-in: wear after Archard (1953), a settled cycle stands for many; {how}"));
+    }
     list
 }
 

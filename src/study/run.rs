@@ -14,7 +14,7 @@ use super::{observe, robust, run_in};
 use crate::optimise::{Minimum, Outcome, curvature};
 use crate::report::{
     Assumption, CostReport, Curves, Findings, KktReport, ObjectiveReport, OutcomeReport, Provenance,
-    REPORT_FORMAT, Report,
+    REPORT_FORMAT, Report, RunningInReport,
 };
 use crate::run::{Cancel, Cost, Event, NoStore, RunContext, Store};
 use std::time::Instant;
@@ -42,9 +42,15 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
     let known = minimum.values.as_ref().and_then(|_| revisit(study, plan, minimum, context));
     let optimum = known.as_ref().map(|known| known.optimum.clone());
     let mut findings = report(study, &searched, known, context);
-    if let (Some(optimum), false) = (optimum, context.cancel.is_cancelled()) {
-        findings.report.robust = robust::report(study, plan, &minimum.x, optimum, context);
+    if let Some(optimum) = optimum {
+        if !context.cancel.is_cancelled() {
+            findings.report.robust = robust::report(study, plan, &minimum.x, optimum, context);
+        }
         findings.report.running_in = run_in::report(study, &searched, context);
+        if findings.report.running_in.as_ref().is_some_and(|r| r.limits.iter().any(|l| !l.met)) {
+            findings.report.objective.saving_percent = None;
+            spoil(&mut findings.report.running_in);
+        }
     }
     findings.report.choices = choices;
     findings.report.study_hash = given.hash.clone();
@@ -53,7 +59,7 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
     let front = front(study, &searched, context, store);
     findings.report.starts = searched.starts;
     // Everything that was simulated for this report, whichever search asked for it.
-    let marches = (searched.marches, Cost::default());
+    let marches = (searched.marches.marches, searched.marches.gradients);
     let all = [plan.problem.costs(), searched.others, of_rivals, marches];
     let mut sum = all.into_iter().fold((Cost::default(), Cost::default()), |a, c| (a.0 + c.0, a.1 + c.1));
     if let Some((front, cost)) = front {
@@ -118,6 +124,13 @@ fn report(study: &Study, found: &Searched, known: Option<Known>, context: RunCon
     let total = simulations + gradients;
     findings.report.cost = CostReport { total, gradients, gradient_calls: minimum.gradients, seconds: 0.0 };
     findings
+}
+
+/// A design that breaks its limits on wear saves nothing.
+fn spoil(running_in: &mut Option<RunningInReport>) {
+    if let Some(minimised) = running_in.as_mut().and_then(|r| r.minimised.as_mut()) {
+        minimised.saving_percent = None;
+    }
 }
 
 fn failed(study: &Study, reason: String, began: Instant) -> Findings {

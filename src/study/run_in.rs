@@ -15,8 +15,8 @@ use crate::report::{
 };
 use crate::run::{Event, RunContext};
 use crate::running_in::{
-    Block, Course, MarchError, Rate, RunningInQuantity, Stage, march, march_predicted, settled_with_wear,
-    worn_volume_m3,
+    Block, Course, MarchError, Rate, RunningInQuantity, Stage, falls, march, march_predicted,
+    settled_with_wear, worn_volume_m3,
 };
 use crate::units::tidy;
 
@@ -32,6 +32,7 @@ pub(super) fn report(study: &Study, found: &Searched, context: RunContext<'_>) -
         duration_h: s.duration_s / HOUR_S,
         speed_rpm: s.point.speed_rad_s * 30.0 / std::f64::consts::PI,
         load_factor: s.point.load_factor,
+        oil_inlet_temperature_c: s.inlet_k.map(|t| tidy(t - 273.15)),
     };
     let bearings = (0..study.bearings.len()).map(|b| bearing(study, wanted, plan, b, x, context));
     Some(RunningInReport {
@@ -48,14 +49,16 @@ pub(super) fn report(study: &Study, found: &Searched, context: RunContext<'_>) -
 fn minimised(wanted: &RunningInPlan, found: &Searched) -> Option<MinimisedReport> {
     let (quantity, scale, unit) = match wanted.minimise? {
         RunningInQuantity::FinalLoss => ("friction loss in the end, all bearings", 1.0, "W"),
-        RunningInQuantity::EnergyLost => ("energy lost over the programme, all bearings", 1e-3, "kJ"),
+        RunningInQuantity::EnergyLost => {
+            ("energy lost over the programme, all bearings", 1e-3 * wanted.objective_scale(), "kJ")
+        }
         _ => ("friction loss meant over the programme, all bearings", 1.0, "W"),
     };
     let end = found.run_in.as_ref()?;
     let (start, optimum) = (scale * end.start, scale * found.minimum.values.as_ref()?.objective);
     let rough = end.approximation.as_ref().is_some_and(|a| !a.final_leg);
     let quantity = if rough { format!("{quantity}, approximated") } else { quantity.to_owned() };
-    let saving_percent = 100.0 * (1.0 - optimum / start);
+    let saving_percent = Some(100.0 * (1.0 - optimum / start));
     Some(MinimisedReport { quantity, start, optimum, unit: unit.to_owned(), saving_percent })
 }
 
@@ -152,13 +155,14 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
     let Some(Stage { model, .. }) = stages.last() else { return };
     let value = |of: RunningInQuantity| of.value(course, model);
     let (first, last) = course.losses();
+    found.duration_h = course.duration_s / HOUR_S;
     found.energy_lost_kj = value(RunningInQuantity::EnergyLost) * 1e-3;
     found.mean_loss_w = value(RunningInQuantity::MeanLoss);
     (found.first_loss_w, found.final_loss_w) = (first, last);
     found.wear_volume_mm3 = value(RunningInQuantity::WearVolume) * 1e9;
-    let deepest = |field: &[f64]| field.iter().copied().fold(0.0, f64::max);
-    found.max_wear_depth_um = deepest(&course.worn_m.shell) * 1e6;
-    found.time_to_run_in_h = (first > last).then(|| value(RunningInQuantity::TimeToRunIn) / HOUR_S);
+    let deepest = |f: &SurfaceField| f.shell.iter().chain(&f.journal).copied().fold(0.0, f64::max);
+    found.max_wear_depth_um = deepest(&course.worn_m) * 1e6;
+    found.time_to_run_in_h = falls(first, last).then(|| value(RunningInQuantity::TimeToRunIn) / HOUR_S);
     found.wear_depth_um = whole_width(model, &course.worn_m.shell, 1e6);
     found.journal_wear_depth_um = whole_width(model, &course.worn_m.journal, 1e6);
     found.refused_blocks = course.refused;
@@ -173,7 +177,7 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
             contact_share: rate.contact_share(),
             min_film_thickness_um: state.min_film_thickness_um,
             max_contact_pressure_mpa: state.max_contact_pressure_mpa,
-            max_wear_depth_um: deepest(&worn.shell) * 1e6,
+            max_wear_depth_um: deepest(worn) * 1e6,
             wear_volume_mm3: worn_volume_m3(worn, model) * 1e9,
         }
     };

@@ -5,12 +5,15 @@ use super::build::Plan;
 use super::check::Study;
 use super::keep::Keep;
 use super::running_in::RunningInPlan;
-use super::running_in_design::RunningInProblem;
+use super::running_in_design::{RunningInProblem, Work};
 use super::seek::End;
-use crate::optimise::{Budget, EvaluationError, Minimum, Outcome, SearchOptions, search};
+use crate::optimise::{
+    Budget, ConstrainedProblem, EvaluationError, Minimum, Multipliers, Outcome, SearchOptions, search,
+};
 use crate::report::ApproximationReport;
-use crate::run::{Cost, Event, RunContext};
+use crate::run::{Event, RunContext};
 use crate::running_in::{Stage, weights};
+use std::time::Instant;
 
 /// Largest share of the blocks that groups may be, to be worth a leg of their own.
 const WORTHWHILE: f64 = 0.5;
@@ -24,8 +27,10 @@ const MOST_LEGS: usize = 3;
 /// What the search of a running-in design tells beside its minimum.
 #[derive(Debug, Clone)]
 pub(super) struct RunInEnd {
-    /// The minimised quantity at the start design.
+    /// The minimised quantity at the study's start design.
     pub start: f64,
+    /// Largest relative violation of any limit there.
+    pub start_violation: f64,
     /// The leg with the approximation, if there was one.
     pub approximation: Option<ApproximationReport>,
 }
@@ -38,10 +43,7 @@ struct Legs<'a, 'r> {
     options: &'a SearchOptions,
     keep: &'a Keep<'a>,
     context: RunContext<'a>,
-}
-
-fn cannot(e: EvaluationError) -> String {
-    format!("the start design cannot be run in: {e}")
+    began: Instant,
 }
 
 /// Searches from a start.
@@ -53,56 +55,93 @@ pub(super) fn seek_run_in(
     options: &SearchOptions,
     (keep, context): (&Keep<'_>, RunContext<'_>),
 ) -> Result<End, String> {
-    let legs = Legs { study, wanted, plan, options, keep, context };
-    let mut problem = legs.problem(start, 0).map_err(cannot)?;
-    let start_value = problem.objective(start).map_err(cannot)?;
-    let mut marches = Cost::default();
-    let (mut minimum, mut rough) = (None, None);
+    let legs = Legs { study, wanted, plan, options, keep, context, began: Instant::now() };
+    let known = legs.problem(start, 0).and_then(|p| p.objective(start).map(|value| (p, value)));
+    let (mut problem, start_value) = match known {
+        Ok(known) => known,
+        Err(e) => return Ok(ended(stopped(start, &e), Work::default(), None)),
+    };
+    let start_violation = problem.values(&plan.start).map_or(f64::NAN, |v| v.violation());
+    // What is saved is saved against the study's start, wherever this search began.
+    let start_value =
+        if plan.start == start { start_value } else { problem.objective(&plan.start).unwrap_or(start_value) };
+    let mut marches = Work::default();
+    let (mut minimum, mut rough): (Option<Minimum>, _) = (None, None);
     let (blocks, groups) = problem.sizes();
     if wanted.approximate_first && groups as f64 <= WORTHWHILE * blocks as f64 {
         let (near, approximated) = legs.approximate(&problem, start)?;
-        let go_on = near.outcome != Outcome::Cancelled && near.values.is_some();
-        marches += problem.cost();
-        if go_on {
-            problem = legs.problem(&near.x, 1).map_err(cannot)?;
+        let next = if near.values.is_some() && near.outcome != Outcome::Cancelled {
+            legs.problem(&near.x, 1)
         } else {
-            marches = marches + approximated.cost() + problem.cost();
-        }
-        rough = Some((approximated, near.history.len(), go_on));
-        minimum = Some(near);
-    }
-    if rough.as_ref().is_none_or(|(.., go_on)| *go_on) {
-        for leg in 1..=MOST_LEGS {
-            let from = minimum.as_ref().map_or(start, |m: &Minimum| &m.x).to_vec();
-            let end = search(&problem, &from, options).map_err(|e| e.to_string())?;
-            marches += problem.cost();
-            let usable = end.values.is_some() && end.outcome != Outcome::Cancelled && leg < MOST_LEGS;
-            let next = if usable { legs.problem(&end.x, leg + 1).ok() } else { None };
-            minimum = Some(joined(minimum, end));
-            let Some((next, end)) = next.zip(minimum.as_ref()) else { break };
-            if problem.apart(&end.x, &next).is_ok_and(|apart| apart <= AGREES) {
-                marches += next.cost();
-                break;
+            Err(EvaluationError::Cancelled)
+        };
+        let iterations = near.history.len();
+        let went_on = !matches!(next, Err(EvaluationError::Cancelled));
+        match next {
+            Ok(next) => {
+                marches += std::mem::replace(&mut problem, next).work();
+                minimum = Some(near);
             }
-            problem = next;
+            // Where the march cannot follow, it begins at the start.
+            Err(EvaluationError::Failed(_)) => {}
+            Err(EvaluationError::Cancelled) => {
+                let outcome = if near.values.is_some() { Outcome::Cancelled } else { near.outcome };
+                minimum = Some(Minimum { outcome, ..near });
+                marches += problem.work();
+            }
         }
+        rough = Some((approximated, iterations, went_on));
+    }
+    if rough.as_ref().is_none_or(|(.., went_on)| *went_on) {
+        minimum = Some(legs.with_the_march(problem, start, minimum, &mut marches)?);
     }
     let minimum = minimum.ok_or("there was no search")?;
     let approximation = rough.map(|(rough, iterations, final_leg)| {
         let report = legs.report(&rough, start, start_value, (blocks, iterations), marches);
-        marches += rough.cost();
+        marches += rough.work();
         finished(report, &rough, &minimum, final_leg)
     });
-    let run_in = Some(RunInEnd { start: start_value, approximation });
-    Ok(End { minimum, shares: Vec::new(), polished: None, marches, run_in })
+    let run_in = Some(RunInEnd { start: start_value, start_violation, approximation });
+    Ok(ended(minimum, marches, run_in))
+}
+
+fn ended(minimum: Minimum, marches: Work, run_in: Option<RunInEnd>) -> End {
+    End { minimum, shares: Vec::new(), polished: None, marches, run_in }
+}
+
+/// The end of a search whose start cannot be run in.
+fn stopped(start: &[f64], why: &EvaluationError) -> Minimum {
+    let (outcome, failures) = match why {
+        EvaluationError::Cancelled => (Outcome::Cancelled, Vec::new()),
+        EvaluationError::Failed(reason) => {
+            (Outcome::StartFailed, vec![format!("the start design cannot be run in: {reason}")])
+        }
+    };
+    Minimum {
+        outcome,
+        x: start.to_vec(),
+        values: None,
+        multipliers: Multipliers::default(),
+        kkt: f64::INFINITY,
+        combined: 1,
+        history: Vec::new(),
+        failures,
+        evaluations: 0,
+        gradients: 0,
+    }
 }
 
 /// A leg behind those before it.
 fn joined(before: Option<Minimum>, mut end: Minimum) -> Minimum {
     let Some(before) = before else { return end };
     let steps = before.history.len() as u64;
-    end.history.iter_mut().for_each(|h| h.iteration += steps);
+    let simulations = before.history.last().map_or(0, |h| h.simulations);
+    for h in &mut end.history {
+        h.iteration += steps;
+        h.simulations += simulations;
+    }
     end.history.splice(0..0, before.history);
+    end.failures.splice(0..0, before.failures);
     end.evaluations += before.evaluations;
     end.gradients += before.gradients;
     end
@@ -117,6 +156,59 @@ impl<'a, 'r> Legs<'a, 'r> {
 
     fn tell(&self, name: &str) {
         self.context.progress.tell(&Event::Stage { name: name.to_owned() });
+    }
+
+    /// Searches with the march itself until its blocks are right for where it ends.
+    fn with_the_march(
+        &self,
+        mut problem: RunningInProblem<'a, 'r>,
+        start: &[f64],
+        mut minimum: Option<Minimum>,
+        marches: &mut Work,
+    ) -> Result<Minimum, String> {
+        for leg in 2.. {
+            let from = minimum.as_ref().map_or(start, |m: &Minimum| &m.x).to_vec();
+            let options = SearchOptions { budget: self.left(minimum.as_ref()), ..*self.options };
+            let end = search(&problem, &from, &options).map_err(|e| e.to_string())?;
+            *marches += problem.work();
+            let mut end = joined(minimum, end);
+            let usable = end.values.is_some() && end.outcome != Outcome::Cancelled;
+            if !usable || end.outcome == Outcome::BudgetSpent {
+                return Ok(end);
+            }
+            let next = match self.problem(&end.x, leg) {
+                Ok(next) => next,
+                Err(EvaluationError::Cancelled) => return Ok(Minimum { outcome: Outcome::Cancelled, ..end }),
+                Err(EvaluationError::Failed(reason)) => {
+                    end.failures
+                        .push(format!("the design found cannot be marched in blocks of its own: {reason}"));
+                    return Ok(Minimum { outcome: Outcome::NoProgress, ..end });
+                }
+            };
+            let apart = problem.apart(&end.x, &next).unwrap_or(f64::INFINITY);
+            if apart <= AGREES || leg > MOST_LEGS {
+                *marches += next.work();
+                if apart > AGREES {
+                    let percent = crate::report::short(100.0 * apart);
+                    end.failures.push(format!(
+                        "marched in blocks of its own the design found differs by {percent} %; reduce running_in.wear_depth_tolerance"
+                    ));
+                    end.outcome = Outcome::NoProgress;
+                }
+                return Ok(end);
+            }
+            (minimum, problem) = (Some(end), next);
+        }
+        Err("there was no leg".to_owned())
+    }
+
+    /// What earlier legs left of the budget.
+    fn left(&self, before: Option<&Minimum>) -> Budget {
+        let (budget, spent) = (self.options.budget, before.map_or(0, |m| m.evaluations));
+        Budget {
+            simulations: budget.simulations.map(|n| n.saturating_sub(spent).max(1)),
+            seconds: budget.seconds.map(|s| (s - self.began.elapsed().as_secs_f64()).max(0.0)),
+        }
     }
 
     /// Searches with the approximation.
@@ -144,7 +236,7 @@ impl<'a, 'r> Legs<'a, 'r> {
         start: &[f64],
         exact: f64,
         (blocks, iterations): (usize, usize),
-        marches: Cost,
+        marches: Work,
     ) -> ApproximationReport {
         let of = |stages: Vec<Stage>| rough.blocks().first().map(|own| weights(own, &stages));
         let stages = super::programme::stages(self.study, self.wanted, self.plan, 0, start);
@@ -157,7 +249,7 @@ impl<'a, 'r> Legs<'a, 'r> {
             design_error_percent: None,
             iterations: iterations as u64,
             simulations: 0,
-            march_simulations: marches.simulations,
+            march_simulations: marches.marches.simulations,
             final_leg: false,
         }
     }
@@ -173,7 +265,7 @@ fn finished(
     let exact = end.values.as_ref().filter(|_| final_leg).map(|v| v.objective);
     let found = exact.and_then(|exact| rough.objective(&end.x).ok().map(|a| 100.0 * (a / exact - 1.0)));
     report.design_error_percent = found;
-    report.simulations = rough.cost().simulations;
+    report.simulations = rough.work().marches.simulations;
     report.final_leg = final_leg;
     report
 }

@@ -3,7 +3,9 @@
 use super::Given;
 use super::bearings::Bearings;
 use super::faults::{Faults, join};
-use super::file::{AccelerationName, FilmModelName, RunningInFile, RunningInGoalName, StageFile, StudyFile};
+use super::file::{
+    AccelerationName, FilmModelName, ParameterFile, RunningInFile, RunningInGoalName, StageFile, StudyFile,
+};
 use super::lexicon::{FASTEST_RAD_S, LARGEST_FACTOR, LONGEST_S};
 use super::plans::{FilmPlan, OperatingPoint};
 use super::sections::worst_case;
@@ -70,6 +72,10 @@ pub(super) fn running_in(
 ) -> Option<RunningInPlan> {
     faults.get(&file.running_in, PATH);
     let others = others(file);
+    let durations = file.parameters.value().is_some_and(|list| {
+        let name = |p: &Given<ParameterFile>| p.value().and_then(|p| p.name.value()).cloned();
+        list.iter().filter_map(name).any(|n| n.starts_with("running_in.") && n.ends_with(".duration"))
+    });
     let Given::Value(r) = &mut file.running_in else { return None };
     faults.unknown::<RunningInFile>(&r.unknown, PATH);
     if film.is_some_and(|f| f.model == FilmModelName::Mobility) {
@@ -102,6 +108,10 @@ pub(super) fn running_in(
             faults.add(&at("minimise"), format!("does not go together with {key}; remove one of them"));
         }
     }
+    if plan.settled.is_some() && durations {
+        let words = "a stage that may end early has no duration to design; remove it or the parameter ending in .duration";
+        faults.add(&at("settled_loss_change_per_hour"), words);
+    }
     faults.need(&r.stages, &at("stages"));
     let Given::Value(list) = &mut r.stages else { return None };
     if list.is_empty() {
@@ -121,6 +131,14 @@ pub(super) fn running_in(
 }
 
 impl RunningInPlan {
+    /// What makes watts of the minimised quantity: for an energy the length of the programme as written, s.
+    pub fn objective_scale(&self) -> f64 {
+        match self.minimise {
+            Some(RunningInQuantity::EnergyLost) => self.stages.iter().map(|s| s.duration_s).sum(),
+            _ => 1.0,
+        }
+    }
+
     /// How wear smooths a shell.
     pub fn smoothing(&self, shell_m: f64) -> Option<Smoothing> {
         let depth_m = self.smoothing_depth_m.unwrap_or(shell_m);
@@ -235,6 +253,9 @@ fn stage(s: &mut StageFile, path: &str, faults: &mut Faults) -> Option<StagePlan
     faults.unknown::<StageFile>(&s.unknown, path);
     let at = |key: &str| join(path, key);
     let name = faults.need(&s.name, &at("name"));
+    if name.as_ref().is_some_and(|n| n.trim().is_empty()) {
+        faults.add(&at("name"), "must not be empty");
+    }
     let duration_s = faults.need(&s.duration, &at("duration")).map(|d| d.si());
     let speed_rad_s = faults.need(&s.speed, &at("speed")).map(|v| v.si());
     let load_factor = faults.or(&mut s.load_factor, &at("load_factor"), 1.0);

@@ -50,6 +50,20 @@ struct Found {
     rows: Option<Vec<Vec<Vec<f64>>>>,
 }
 
+/// Work of marches, and of gradients through them beyond the marches.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Work {
+    pub marches: Cost,
+    pub gradients: Cost,
+}
+
+impl std::ops::AddAssign for Work {
+    fn add_assign(&mut self, other: Self) {
+        self.marches += other.marches;
+        self.gradients += other.gradients;
+    }
+}
+
 /// All that was found for a choice of blocks, and the work it was.
 #[derive(Default, Serialize, Deserialize)]
 struct Memory {
@@ -58,7 +72,7 @@ struct Memory {
     /// What the marches that chose the blocks found there.
     chosen_at: Vec<Vec<f64>>,
     found: Vec<Found>,
-    cost: Cost,
+    work: Work,
 }
 
 /// The problem; see the module page.
@@ -166,12 +180,8 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
     }
 
     /// Work of all marches and of their gradients.
-    pub fn cost(&self) -> Cost {
-        open(&self.memory).cost
-    }
-
-    fn spend(&self, cost: Cost) {
-        open(&self.memory).cost += cost;
+    pub fn work(&self) -> Work {
+        open(&self.memory).work
     }
 
     /// All bearings marched at a design.
@@ -184,7 +194,7 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
                 .map_err(|e| EvaluationError::Failed(e.to_string()))?;
             let (blocks, options) = (&self.blocks[bearing], &self.options[bearing]);
             let found = replay(&stages, blocks, options, None, self.context.cancel).map_err(refused)?;
-            self.spend(found.course.cost);
+            open(&self.memory).work.marches += found.course.cost;
             Ok(Marched { stages, found })
         };
         let all: Result<Vec<Marched>, EvaluationError> =
@@ -232,7 +242,7 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
         for (Marched { stages, found }, options) in self.marched(x)?.iter().zip(&self.options) {
             let table = march_gradient(engine, stages, found, options, &of, self.context.cancel);
             let mut table = table.map_err(refused)?;
-            self.spend(table.cost);
+            open(&self.memory).work.gradients += table.cost;
             table.rows.iter_mut().for_each(|row| row.resize(x.len(), 0.0));
             all.push(table.rows);
         }
@@ -244,9 +254,10 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
         Ok(all)
     }
 
-    /// The minimised quantity of all bearings at a design.
+    /// The minimised quantity of all bearings at a design, W: energy per length of the programme as the study has it.
     pub fn objective(&self, x: &[f64]) -> Result<f64, EvaluationError> {
-        Ok(self.worth(x)?.iter().zip(self.counts()).map(|(own, n)| n * own[0]).sum())
+        let sum: f64 = self.worth(x)?.iter().zip(self.counts()).map(|(own, n)| n * own[0]).sum();
+        Ok(sum / self.wanted.objective_scale())
     }
 }
 
@@ -270,7 +281,7 @@ fn first_march(
             let of = quantities(wanted);
             memory.chosen_at.push(of.iter().map(|q| q.value(&found.course, model)).collect());
         }
-        memory.cost += found.course.cost;
+        memory.work.marches += found.course.cost;
     }
     Ok(memory)
 }
@@ -296,7 +307,8 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
         for (rows, count) in self.gradients(x)?.into_iter().zip(self.counts()) {
             let mut rows = rows.into_iter();
             let objective = rows.next().unwrap_or_default();
-            slopes.objective.iter_mut().zip(&objective).for_each(|(sum, g)| *sum += count * g);
+            let by = count / self.wanted.objective_scale();
+            slopes.objective.iter_mut().zip(&objective).for_each(|(sum, g)| *sum += by * g);
             for (mut row, limit) in rows.zip(&self.wanted.limits) {
                 row.iter_mut().for_each(|g| *g /= limit.limit);
                 slopes.inequalities.push(row);

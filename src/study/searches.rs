@@ -7,6 +7,7 @@ use super::build::{Plan, plan};
 use super::check::Study;
 use super::keep::Keep;
 use super::run_in_search::RunInEnd;
+use super::running_in_design::Work;
 use super::seek::{End, seek};
 use crate::gradient::EngineName;
 use crate::optimise::{Method, Minimum, Outcome, Polished, SearchOptions, latin_hypercube};
@@ -45,7 +46,7 @@ pub(super) struct Searched<'r> {
     /// What polishing did.
     pub polished: Option<Polished>,
     /// Work of all marches through running-in.
-    pub marches: Cost,
+    pub marches: Work,
     /// How a running-in design was searched.
     pub run_in: Option<RunInEnd>,
     /// All searches, if there were several.
@@ -108,11 +109,16 @@ pub(super) fn searches<'r>(
         .collect();
     let mut ends: Vec<(Plan, End)> = ends.into_iter().collect::<Result<_, _>>()?;
     let report = report(study, &starts, &ends);
+    let first = ends.first().and_then(|(_, end)| end.run_in.as_ref().map(|r| (r.start, r.start_violation)));
     let best = (0..ends.len())
         .min_by(|a, b| rank(&ends[*a].1.minimum).total_cmp(&rank(&ends[*b].1.minimum)))
         .unwrap_or(0);
-    let marches = ends.iter().map(|(_, end)| end.marches).sum();
-    let (mut plan, End { minimum, shares, polished, run_in, .. }) = ends.swap_remove(best);
+    let mut marches = Work::default();
+    ends.iter().for_each(|(_, end)| marches += end.marches);
+    let (mut plan, End { minimum, shares, polished, mut run_in, .. }) = ends.swap_remove(best);
+    if let (Some(run_in), Some(start)) = (run_in.as_mut(), first) {
+        (run_in.start, run_in.start_violation) = start;
+    }
     let others = ends
         .iter()
         .map(|(p, _)| p.problem.costs())
@@ -243,8 +249,10 @@ fn rival_run<'r>(
     let keep = Keep::of(study, format!("rival-{k}"), store);
     resume(&mut plan, &keep);
     let options = SearchOptions { method, ..study.optimiser.options };
-    let end = seek(study, &plan, &plan.start, &options, (&keep, context)).ok()?.minimum;
+    let End { minimum: end, marches, .. } =
+        seek(study, &plan, &plan.start, &options, (&keep, context)).ok()?;
     let (simulations, gradients) = plan.problem.costs();
+    let (simulations, gradients) = (simulations + marches.marches, gradients + marches.gradients);
     let per_cycle = simulations.factorisations as f64 / simulations.simulations.max(1) as f64;
     let cases = plan.cases.len() as f64;
     let run = RivalRun {

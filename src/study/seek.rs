@@ -4,10 +4,11 @@ use super::build::Plan;
 use super::check::Study;
 use super::keep::Keep;
 use super::run_in_search::{RunInEnd, seek_run_in};
+use super::running_in_design::Work;
 use crate::optimise::{
     EvaluationError, Minimum, Outcome, Polished, SearchOptions, polish, search, search_worst,
 };
-use crate::run::{Cost, RunContext};
+use crate::run::RunContext;
 
 /// A polish goes on to this share of the tolerance of the search.
 const POLISHED: f64 = 1e-4;
@@ -20,7 +21,7 @@ pub(super) struct End {
     /// What polishing did, if it was wanted.
     pub polished: Option<Polished>,
     /// Work of marches through running-in.
-    pub marches: Cost,
+    pub marches: Work,
     /// How a running-in design was searched.
     pub run_in: Option<RunInEnd>,
 }
@@ -58,5 +59,5 @@ pub(super) fn seek(
             minimum.outcome = Outcome::Converged;
         }
     }
-    Ok(End { minimum, shares, polished, marches: Cost::default(), run_in: None })
+    Ok(End { minimum, shares, polished, marches: Work::default(), run_in: None })
 }
