@@ -233,6 +233,10 @@ fn a_running_in_design_loses_less_within_its_wear_limits() {
     assert!((bearing.mean_loss_w / minimised.optimum - 1.0).abs() < 1e-3);
     assert!((bearing.wear_volume_mm3 / limit.value - 1.0).abs() < 0.1);
     assert!(report.objective.quantity.contains("running-in"));
+    // The gradient through the march is proven where it was used last.
+    let gradient = running_in.gradient.as_ref().unwrap();
+    println!("{gradient:?}");
+    assert!(gradient.apart < 1e-4 && gradient.effect_w_per_percent.len() == 2, "{gradient:?}");
 }
 
 #[test]

@@ -148,7 +148,7 @@ fn tra_and_adj_agree_on_every_quantity_of_a_running_in() {
 fn differences_agree_with_adj_on_every_quantity_of_a_running_in() {
     let at = programme(&OWN[1..], 0.0, SMOOTHS, 1 << 30);
     let worst = at.misses(EngineName::Cen, &at.gradient(EngineName::Adj));
-    assert!(worst < 2e-5, "CEN {worst:.1e}");
+    assert!(worst < 5e-5, "CEN {worst:.1e}");
     let at = programme(&OWN[1..2], 0.3, None, 1 << 30);
     let adj = at.gradient(EngineName::Adj);
     for name in [EngineName::Fw, EngineName::Bw] {

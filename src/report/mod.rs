@@ -30,8 +30,8 @@ pub use data::*;
 pub use html::html;
 pub use running_in::{
     ApproximationReport, BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, ProfileReport,
-    RunningInBlock, RunningInReport, StageReport, StribeckPoint, WearLimitReport, running_in_csv,
-    stribeck_csv, wear_csv,
+    RunningInBlock, RunningInGradientReport, RunningInReport, StageReport, StribeckPoint, WearLimitReport,
+    running_in_csv, stribeck_csv, wear_csv,
 };
 pub use searches::{
     ChoiceReport, ChoiceRun, ChoicesReport, LinearReport, LocalOptimum, ParetoPoint, ParetoReport, RivalRun,

@@ -13,6 +13,8 @@ pub struct RunningInReport {
     pub wear_depth_tolerance_um: f64,
     /// What was minimised, if the design is one for running-in.
     pub minimised: Option<MinimisedReport>,
+    /// The gradient of what was minimised at the design found, and a check of it.
+    pub gradient: Option<RunningInGradientReport>,
     /// The first leg of its search, with the approximation of the march, if there was one.
     pub approximation: Option<ApproximationReport>,
     /// Limits on wear, if the design is one for running-in.
@@ -57,6 +59,23 @@ pub struct ApproximationReport {
     pub march_simulations: u64,
     /// Whether the search went on with the march itself.
     pub final_leg: bool,
+}
+
+/// A gradient through the march at the design found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RunningInGradientReport {
+    /// Engine.
+    pub engine: String,
+    /// Parameters.
+    pub parameters: Vec<String>,
+    /// What one per cent of the box of each does, W.
+    pub effect_w_per_percent: Vec<f64>,
+    /// Derivative along a direction that takes all parameters, W per box, by the engine.
+    pub along_w: f64,
+    /// The same by a central difference of two marches with the same blocks.
+    pub difference_w: f64,
+    /// How far the two are apart, relative.
+    pub apart: f64,
 }
 
 /// A limit on wear.

@@ -10,8 +10,8 @@ use super::running_in::{RunningInPlan, StagePlan};
 use super::searches::Searched;
 use crate::cranktrain::{BearingOutput, JournalBearing, SurfaceField};
 use crate::report::{
-    BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, RunningInBlock, RunningInReport, StageReport,
-    WearLimitReport,
+    BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, RunningInBlock, RunningInGradientReport,
+    RunningInReport, StageReport, WearLimitReport,
 };
 use crate::run::{Event, RunContext};
 use crate::running_in::{
@@ -39,9 +39,24 @@ pub(super) fn report(study: &Study, found: &Searched, context: RunContext<'_>) -
         stages: programme(study, wanted, x).iter().map(stage).collect(),
         wear_depth_tolerance_um: wanted.tolerance_m * 1e6,
         minimised: minimised(wanted, found),
+        gradient: gradient(study, found),
         approximation: found.run_in.as_ref().and_then(|end| end.approximation.clone()),
         limits: limits(study, wanted, found),
         bearings: bearings.collect(),
+    })
+}
+
+/// The gradient of what was minimised, with its check.
+fn gradient(study: &Study, found: &Searched) -> Option<RunningInGradientReport> {
+    let proof = found.run_in.as_ref()?.proof.as_ref()?;
+    let [along_w, difference_w] = proof.along_w;
+    Some(RunningInGradientReport {
+        engine: study.engine.as_str().to_owned(),
+        parameters: study.parameters.iter().map(|p| p.name.clone()).collect(),
+        effect_w_per_percent: proof.over_box_w.iter().map(|g| 0.01 * g).collect(),
+        along_w,
+        difference_w,
+        apart: (along_w - difference_w).abs() / along_w.abs().max(f64::MIN_POSITIVE),
     })
 }
 

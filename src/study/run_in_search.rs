@@ -5,7 +5,7 @@ use super::build::Plan;
 use super::check::Study;
 use super::keep::Keep;
 use super::running_in::RunningInPlan;
-use super::running_in_design::{RunningInProblem, Work};
+use super::running_in_design::{Proof, RunningInProblem, Work};
 use super::seek::End;
 use crate::optimise::{
     Budget, ConstrainedProblem, EvaluationError, Minimum, Multipliers, Outcome, SearchOptions, search,
@@ -33,6 +33,8 @@ pub(super) struct RunInEnd {
     pub start_violation: f64,
     /// The leg with the approximation, if there was one.
     pub approximation: Option<ApproximationReport>,
+    /// The gradient at the design found.
+    pub proof: Option<Proof>,
 }
 
 /// A search on its way.
@@ -66,7 +68,7 @@ pub(super) fn seek_run_in(
     let start_value =
         if plan.start == start { start_value } else { problem.objective(&plan.start).unwrap_or(start_value) };
     let mut marches = Work::default();
-    let (mut minimum, mut rough): (Option<Minimum>, _) = (None, None);
+    let (mut minimum, mut rough, mut proof): (Option<Minimum>, _, _) = (None, None, None);
     let (blocks, groups) = problem.sizes();
     if wanted.approximate_first && groups as f64 <= WORTHWHILE * blocks as f64 {
         let (near, approximated) = legs.approximate(&problem, start)?;
@@ -93,7 +95,8 @@ pub(super) fn seek_run_in(
         rough = Some((approximated, iterations, went_on));
     }
     if rough.as_ref().is_none_or(|(.., went_on)| *went_on) {
-        minimum = Some(legs.with_the_march(problem, start, minimum, &mut marches)?);
+        let (end, found) = legs.with_the_march(problem, start, minimum, &mut marches)?;
+        (minimum, proof) = (Some(end), found);
     }
     let minimum = minimum.ok_or("there was no search")?;
     let approximation = rough.map(|(rough, iterations, final_leg)| {
@@ -101,7 +104,7 @@ pub(super) fn seek_run_in(
         marches += rough.work();
         finished(report, &rough, &minimum, final_leg)
     });
-    let run_in = Some(RunInEnd { start: start_value, start_violation, approximation });
+    let run_in = Some(RunInEnd { start: start_value, start_violation, approximation, proof });
     Ok(ended(minimum, marches, run_in))
 }
 
@@ -165,24 +168,28 @@ impl<'a, 'r> Legs<'a, 'r> {
         start: &[f64],
         mut minimum: Option<Minimum>,
         marches: &mut Work,
-    ) -> Result<Minimum, String> {
+    ) -> Result<(Minimum, Option<Proof>), String> {
         for leg in 2.. {
             let from = minimum.as_ref().map_or(start, |m: &Minimum| &m.x).to_vec();
             let options = SearchOptions { budget: self.left(minimum.as_ref()), ..*self.options };
             let end = search(&problem, &from, &options).map_err(|e| e.to_string())?;
-            *marches += problem.work();
             let mut end = joined(minimum, end);
             let usable = end.values.is_some() && end.outcome != Outcome::Cancelled;
             if !usable || end.outcome == Outcome::BudgetSpent {
-                return Ok(end);
+                *marches += problem.work();
+                return Ok((end, None));
             }
             let next = match self.problem(&end.x, leg) {
                 Ok(next) => next,
-                Err(EvaluationError::Cancelled) => return Ok(Minimum { outcome: Outcome::Cancelled, ..end }),
+                Err(EvaluationError::Cancelled) => {
+                    *marches += problem.work();
+                    return Ok((Minimum { outcome: Outcome::Cancelled, ..end }, None));
+                }
                 Err(EvaluationError::Failed(reason)) => {
                     end.failures
                         .push(format!("the design found cannot be marched in blocks of its own: {reason}"));
-                    return Ok(Minimum { outcome: Outcome::NoProgress, ..end });
+                    *marches += problem.work();
+                    return Ok((Minimum { outcome: Outcome::NoProgress, ..end }, None));
                 }
             };
             let apart = problem.apart(&end.x, &next).unwrap_or(f64::INFINITY);
@@ -195,9 +202,12 @@ impl<'a, 'r> Legs<'a, 'r> {
                     ));
                     end.outcome = Outcome::NoProgress;
                 }
-                return Ok(end);
+                let proof = problem.proof(&end.x).ok();
+                *marches += problem.work();
+                return Ok((end, proof));
             }
-            (minimum, problem) = (Some(end), next);
+            *marches += std::mem::replace(&mut problem, next).work();
+            minimum = Some(end);
         }
         Err("there was no leg".to_owned())
     }

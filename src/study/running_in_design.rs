@@ -106,6 +106,9 @@ fn quantities(wanted: &RunningInPlan) -> Vec<RunningInQuantity> {
     std::iter::once(minimised).chain(wanted.limits.iter().map(|l| l.quantity)).collect()
 }
 
+/// Step of the difference that proves a gradient, as a share of the box.
+const BESIDE: f64 = 1e-5;
+
 /// Number of blocks.
 pub(super) fn count(blocks: &Blocks) -> usize {
     blocks.iter().flatten().map(Vec::len).sum()
@@ -258,6 +261,32 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
     pub fn objective(&self, x: &[f64]) -> Result<f64, EvaluationError> {
         let sum: f64 = self.worth(x)?.iter().zip(self.counts()).map(|(own, n)| n * own[0]).sum();
         Ok(sum / self.wanted.objective_scale())
+    }
+}
+
+/// A gradient of the minimised quantity, and one derivative of it against a difference.
+#[derive(Debug, Clone)]
+pub(super) struct Proof {
+    /// By every parameter, over its whole box, W.
+    pub over_box_w: Vec<f64>,
+    /// Along a direction that takes every parameter: by the engine, and by a central difference of two marches, W.
+    pub along_w: [f64; 2],
+}
+
+impl RunningInProblem<'_, '_> {
+    /// The gradient at a design, checked by two marches beside it.
+    pub fn proof(&self, x: &[f64]) -> Result<Proof, EvaluationError> {
+        let (lower, upper) = self.bounds();
+        let boxes: Vec<f64> = lower.iter().zip(&upper).map(|(l, u)| u - l).collect();
+        let gradient = self.slopes(x)?.objective;
+        let over_box_w: Vec<f64> = gradient.iter().zip(&boxes).map(|(g, b)| g * b).collect();
+        // All parameters count, none cancels another.
+        let along: Vec<f64> = over_box_w.iter().map(|g| g.signum()).collect();
+        let moved = |sign: f64| -> Vec<f64> {
+            x.iter().zip(&boxes).zip(&along).map(|((x, b), d)| x + sign * BESIDE * b * d).collect()
+        };
+        let difference = (self.objective(&moved(1.0))? - self.objective(&moved(-1.0))?) / (2.0 * BESIDE);
+        Ok(Proof { along_w: [crate::math::dot(&over_box_w, &along), difference], over_box_w })
     }
 }
 
