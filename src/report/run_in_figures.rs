@@ -51,7 +51,7 @@ pub fn profile(p: &ProfileReport, name: &str) -> String {
     let plots = vec![curve(&p.new_um, START, "new"), curve(&p.run_in_um, FOUND, "run in")];
     let up: Vec<f64> = p.new_um.iter().chain(&p.run_in_um).copied().collect();
     let end = p.axial_mm.iter().fold(0.0f64, |m, z| m.max(z.abs()));
-    let (end, step) = tight_axis([end].into_iter());
+    let (end, step) = tight_axis([end]);
     let layout = half(styled(Layout::auto_from_plots(&plots)))
         .with_x_label("position across the width [mm]")
         .with_y_label("profile [µm]")
