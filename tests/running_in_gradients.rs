@@ -66,6 +66,8 @@ fn programme(
         },
         Stage { model, duration_s: 900.0, variables: (0..n).collect(), duration_variable: Some(n + 3) },
     ];
+    // So small that no edge of a cavity passes a cell between the two sides, where quantities have kinks: ten times longer steps of load
+    // factor and temperature cross some and miss by 1e-4.
     let step = |p: &BearingParameter| match p {
         BearingParameter::InletTemperature => 3e-5,
         BearingParameter::DiametralClearance => 8e-10,

@@ -7,7 +7,7 @@
 use super::GradientError;
 use super::balanced::answer;
 use super::chain::Chain;
-use super::transient::{by_parameter, transient};
+use super::transient::{Tangents, by_parameter, transient};
 use crate::dae::{CycleEquations, SensitiveDae};
 use crate::orbit::{Orbit, OrbitOptions, Quantity, Reduction};
 use crate::run::{Cancel, Cost};
@@ -40,6 +40,20 @@ pub fn along<M: SensitiveDae>(
     directions: &[Along],
     cancel: &Cancel,
 ) -> Result<AlongTable, GradientError> {
+    let found = along_with(model, at, options, of, directions, true, cancel)?;
+    Ok(AlongTable { rows: found.table.rows, locals: found.locals, cost: found.table.cost })
+}
+
+/// The same with or without local outputs: what TRA is made of.
+pub(super) fn along_with<M: SensitiveDae>(
+    model: &M,
+    at: &Orbit,
+    options: &OrbitOptions,
+    of: &[Quantity],
+    directions: &[Along],
+    locals: bool,
+    cancel: &Cancel,
+) -> Result<Tangents, GradientError> {
     let model = at.model(model)?;
     let np = model.parameters().len();
     let column = |direction: &Along| {
@@ -57,24 +71,23 @@ pub fn along<M: SensitiveDae>(
     let means: Vec<Quantity> =
         outputs.iter().map(|&output| Quantity { output, reduction: Reduction::Mean }).collect();
     let asked: Vec<Quantity> = of.iter().chain(&means).copied().collect();
-    let found = transient(Chain::new(&model, at, options, cancel), &asked, &columns, true)?;
-    let (mut rows, mut locals, cost) = (found.table.rows, found.locals, found.table.cost);
-    let by_mean = rows.split_off(of.len());
-    let locals_by_unknown = locals.split_off(directions.len());
+    let mut found = transient(Chain::new(&model, at, options, cancel), &asked, &columns, locals)?;
+    let by_mean = found.table.rows.split_off(of.len());
+    let locals_by_unknown = found.locals.split_off(directions.len().min(found.locals.len()));
     if let Some(equations) = equations {
         let values: Vec<f64> = means.iter().map(|q| at.value(q)).collect();
         let direct = |by_p: &[f64], j: usize| crate::math::dot(&directions[j].parameters, by_p);
         let answer = answer(equations, &values, &at.parameters, &by_mean, direct)?;
-        for row in &mut rows {
+        for row in &mut found.table.rows {
             let by_unknown = row.split_off(directions.len());
             answer.add(&by_unknown, row);
         }
-        for (j, row) in locals.iter_mut().enumerate() {
+        for (j, row) in found.locals.iter_mut().enumerate() {
             for (u, by_unknown) in locals_by_unknown.iter().enumerate() {
                 let moves = answer.by_direction[(u, j)];
                 row.iter_mut().zip(by_unknown).for_each(|(r, g)| *r += moves * g);
             }
         }
     }
-    Ok(AlongTable { rows, locals, cost })
+    Ok(found)
 }

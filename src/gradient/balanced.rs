@@ -10,8 +10,7 @@
 //! exact, for one more row per mean and one more column per unknown.
 
 use super::adjoint::adjoint;
-use super::chain::Chain;
-use super::transient::{by_parameter, transient};
+use super::along::{Along, along_with};
 use super::{EngineName, GradientEngine, GradientError, GradientTable};
 use crate::dae::{CycleEquations, SensitiveDae};
 use crate::orbit::{Orbit, OrbitOptions, Quantity, Reduction};
@@ -56,10 +55,13 @@ impl<M: SensitiveDae> GradientEngine<M> for Transient {
         of: &[Quantity],
         cancel: &Cancel,
     ) -> Result<GradientTable, GradientError> {
-        balanced(model, at, of, |model, of| {
-            let chain = Chain::new(model, at, options, cancel);
-            Ok(transient(chain, of, &by_parameter(model), false)?.table)
-        })
+        let n = super::varied(model, at);
+        let unit = |j: usize| Along {
+            parameters: (0..n).map(|k| if k == j { 1.0 } else { 0.0 }).collect(),
+            fields: Vec::new(),
+        };
+        let directions: Vec<Along> = (0..n).map(unit).collect();
+        Ok(along_with(model, at, options, of, &directions, false, cancel)?.table)
     }
 }
 

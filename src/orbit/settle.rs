@@ -98,6 +98,17 @@ impl Orbit {
         self.states.len()
     }
 
+    /// The same with other states; those of this one are not copied.
+    pub fn with_states(&self, states: Vec<Vec<f64>>) -> Self {
+        Self {
+            states,
+            parameters: self.parameters.clone(),
+            outputs: self.outputs.clone(),
+            response: self.response.clone(),
+            ..*self
+        }
+    }
+
     /// Time of step `n`.
     pub fn time_s(&self, n: usize) -> f64 {
         n as f64 * self.dt_s

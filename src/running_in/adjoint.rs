@@ -12,33 +12,26 @@
 //! Derivatives by the surfaces are those by the gap, which the adjoint has anyway.
 
 use super::field::{moved, product, zeros};
-use super::gradient::RunningInGradient;
-use super::march::{Block, March};
-use super::quantity::{RunningInQuantity, Worth, area_slope};
+use super::gradient::{Asked, RunningInGradient};
+use super::march::Block;
+use super::quantity::{BlockWorth, Worth, area_slope};
 use super::rate::{Rate, worn};
-use super::stage::{MarchError, MarchOptions, Stage, variable_count};
+use super::stage::{MarchError, variable_count};
 use crate::cranktrain::{BearingOutput, JournalBearing, SurfaceField};
 use crate::gradient::{EngineName, engine};
 use crate::orbit::{Quantity, Reduction};
-use crate::run::{Cancel, Cost};
+use crate::run::Cost;
 use std::sync::Arc;
 
 /// Gradients of quantities by everything a programme depends on, a backward sweep over the programme for each.
-pub(super) fn march_adjoint(
-    stages: &[Stage],
-    march: &March,
-    options: &MarchOptions,
-    of: &[RunningInQuantity],
-    cancel: &Cancel,
-) -> Result<RunningInGradient, MarchError> {
-    let last = stages.last().ok_or_else(|| MarchError::Parameters("no stages".to_owned()))?;
+pub(super) fn march_adjoint(asked: Asked<'_>) -> Result<RunningInGradient, MarchError> {
     let mut found = RunningInGradient { rows: Vec::new(), cost: Cost::default() };
-    let area = area_slope(last, variable_count(stages));
-    for quantity in of {
-        let worth = quantity.worth(&march.course, &last.model);
+    let area = area_slope(asked.last, variable_count(asked.stages));
+    for quantity in asked.of {
+        let worth = quantity.worth(&asked.march.course, &asked.last.model);
         let row = area.iter().map(|a| worth.area * a).collect();
-        let mut back = Back { stages, options, cancel, row, near: None, cost: Cost::default() };
-        back.run(march, &worth)?;
+        let mut back = Back { asked, row, near: None, cost: Cost::default() };
+        back.run(&worth)?;
         found.rows.push(back.row);
         found.cost += back.cost;
     }
@@ -46,9 +39,7 @@ pub(super) fn march_adjoint(
 }
 
 struct Back<'a> {
-    stages: &'a [Stage],
-    options: &'a MarchOptions,
-    cancel: &'a Cancel,
+    asked: Asked<'a>,
     /// Derivatives by the variables.
     row: Vec<f64>,
     /// The cycle looked at last.
@@ -57,17 +48,16 @@ struct Back<'a> {
 }
 
 impl Back<'_> {
-    fn run(&mut self, march: &March, worth: &Worth) -> Result<(), MarchError> {
+    fn run(&mut self, worth: &Worth) -> Result<(), MarchError> {
+        let Asked { march, stages, .. } = self.asked;
         let mut later = worth.worn.clone();
         if worth.last_loss != 0.0 {
-            let at = (self.stages.len() - 1, &march.course.worn_m);
+            let at = (stages.len() - 1, &march.course.worn_m);
             let by = self.cycle(at, &march.course.last, worth.last_loss, &SurfaceField::default())?;
             later = moved(&later, 1.0, &by);
         }
         for (k, block) in march.blocks.iter().enumerate().rev() {
-            let in_last = block.stage + 1 == self.stages.len();
-            let begins = in_last && (k == 0 || march.blocks[k - 1].stage != block.stage);
-            later = self.block(block, worth, (in_last, begins), &later)?;
+            later = self.block(block, worth.of_block(march, k, stages.len()), &later)?;
         }
         Ok(())
     }
@@ -76,26 +66,22 @@ impl Back<'_> {
     fn block(
         &mut self,
         block: &Block,
-        worth: &Worth,
-        (in_last, begins): (bool, bool),
+        worth: BlockWorth,
         later: &SurfaceField,
     ) -> Result<SurfaceField, MarchError> {
-        let h = block.length_s;
-        let e = worth.energy + if in_last { worth.last_energy } else { 0.0 };
-        let [k1, k2] = [0, 1].map(|r| self.options.depths(&block.rates[r]));
+        let (h, e) = (block.length_s, worth.energy);
+        let [k1, k2] = [0, 1].map(|r| self.asked.options.depths(&block.rates[r]));
         let half = moved(&zeros(later), 0.5 * h, later);
         let second = self.cycle((block.stage, &block.reached_m), &block.rates[1], 0.5 * e * h, &half)?;
-        let first_loss = if begins { worth.first_loss } else { 0.0 };
         let on_first = moved(&half, h, &second);
         let at = (block.stage, &block.worn_m);
-        let first = self.cycle(at, &block.rates[0], 0.5 * e * h + first_loss, &on_first)?;
+        let first = self.cycle(at, &block.rates[0], 0.5 * e * h + worth.first_loss, &on_first)?;
         let losses = block.rates[0].loss_w() + block.rates[1].loss_w();
         let by_length = worth.duration
-            + if in_last { worth.last_duration } else { 0.0 }
             + 0.5 * e * losses
             + 0.5 * (product(later, &k1) + product(later, &k2))
             + product(&second, &k1);
-        let stage = &self.stages[block.stage];
+        let stage = &self.asked.stages[block.stage];
         if let Some(v) = stage.duration_variable {
             self.row[v] += by_length * h / stage.duration_s;
         }
@@ -110,8 +96,9 @@ impl Back<'_> {
         on_loss: f64,
         on_depth: &SurfaceField,
     ) -> Result<SurfaceField, MarchError> {
-        self.cancel.check().map_err(|_| MarchError::Cancelled)?;
-        let [shell, journal] = self.options.depth_rates();
+        let Asked { stages, options, cancel, .. } = self.asked;
+        cancel.check().map_err(|_| MarchError::Cancelled)?;
+        let [shell, journal] = options.depth_rates();
         let times = |by: f64, v: &[f64]| -> Vec<f64> { v.iter().map(|w| by * w).collect() };
         let marks =
             SurfaceField { shell: times(shell, &on_depth.shell), journal: times(journal, &on_depth.journal) };
@@ -124,12 +111,12 @@ impl Back<'_> {
         if of.is_empty() {
             return Ok(by);
         }
-        let stage = &self.stages[stage];
+        let stage = &stages[stage];
         let at = (&stage.model, worn_m);
-        let rate = rate.complete(at, self.options, &mut self.near, self.cancel, &mut self.cost)?;
+        let rate = rate.complete(at, options, &mut self.near, cancel, &mut self.cost)?;
         let model = worn(&stage.model, worn_m, marks)?;
         let adjoint = engine::<JournalBearing>(EngineName::Adj, 0.0);
-        let table = adjoint.gradient(&model, &rate.orbit, &self.options.orbit, &of, self.cancel)?;
+        let table = adjoint.gradient(&model, &rate.orbit, &options.orbit, &of, cancel)?;
         self.cost += table.cost;
         for ((row, fields), w) in table.rows.iter().zip(&table.fields).zip(&weights) {
             for (g, v) in row.iter().zip(&stage.variables) {

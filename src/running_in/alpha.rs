@@ -41,8 +41,9 @@ fn slowing(block: &Block, options: &MarchOptions) -> f64 {
 }
 
 /// The weights `alpha` of the groups: with the losses at both ends of each they make the mean.
-pub fn weights(shares: &[Vec<f64>], stages: &[Stage]) -> Vec<f64> {
-    let lengths = shares.iter().zip(stages).flat_map(|(own, s)| own.iter().map(|share| share * s.duration_s));
+pub fn weights(shares: &[Vec<f64>], durations_s: &[f64]) -> Vec<f64> {
+    let lengths =
+        shares.iter().zip(durations_s).flat_map(|(own, duration_s)| own.iter().map(move |s| s * duration_s));
     let lengths: Vec<f64> = lengths.collect();
     let total: f64 = lengths.iter().sum();
     lengths.iter().map(|h| h / (2.0 * total)).collect()

@@ -12,6 +12,7 @@
 //! The number of modes is the one that would have predicted the newest cycle best from the others. Deliberately not here: when a
 //! prediction is good enough (see [`super::predicted`]).
 
+use super::field::flat;
 use super::rate::Rate;
 use crate::cranktrain::SurfaceField;
 use crate::math::dot;
@@ -32,22 +33,20 @@ struct Snapshot {
     rate: Arc<Rate>,
 }
 
-/// Solved cycles of a stage and the basis they span.
+/// Solved cycles of a stage, the newest last, and the basis they span.
 #[derive(Default)]
 pub(super) struct Basis {
     snapshots: Vec<Snapshot>,
-    modes: usize,
     map: Option<Map>,
 }
 
-/// What turns surfaces into weights of the snapshots, the newest of which comes last.
+/// What turns surfaces into weights of snapshots.
 struct Map {
-    /// `V_r S_r^-2 V_r^T` of all but the newest.
+    newest: Vec<f64>,
+    /// `w_j - w_0` of the others.
+    columns: Vec<Vec<f64>>,
+    /// `V_r S_r^-2 V_r^T` of the columns.
     matrix: DMatrix<f64>,
-}
-
-fn flat(field: &SurfaceField) -> Vec<f64> {
-    field.shell.iter().chain(&field.journal).copied().collect()
 }
 
 fn blended(c: &[f64], fields: impl Iterator<Item = impl AsRef<[f64]>>) -> Vec<f64> {
@@ -64,43 +63,44 @@ fn off(a: &[f64], b: &[f64]) -> Vec<f64> {
 }
 
 impl Map {
-    fn of(snapshots: &[Snapshot], modes: usize) -> Self {
-        let (newest, others) = snapshots.split_last().map_or((None, &[][..]), |(n, o)| (Some(n), o));
-        let from = |s: &Snapshot| newest.map_or_else(Vec::new, |n| off(&s.worn, &n.worn));
-        let mut columns: Vec<Vec<f64>> = others.iter().map(from).collect();
-        // Of unit length, so that near cycles, which tell most, are not drowned by far ones.
-        let sizes: Vec<f64> = columns.iter().map(|c| dot(c, c).sqrt()).collect();
-        columns.iter_mut().zip(&sizes).for_each(|(c, size)| c.iter_mut().for_each(|v| *v /= size));
-        let m = columns.len();
-        if m == 0 {
-            return Self { matrix: DMatrix::zeros(0, 0) };
-        }
-        let eigen = DMatrix::from_fn(m, m, |i, j| dot(&columns[i], &columns[j])).symmetric_eigen();
-        let mut order: Vec<usize> = (0..m).collect();
-        order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-        let largest = order.first().map_or(0.0, |k| eigen.eigenvalues[*k]);
-        let mut matrix = DMatrix::zeros(m, m);
-        let real = |k: &&usize| eigen.eigenvalues[**k] > ROUNDING * ROUNDING * largest;
-        for k in order.iter().take(modes).filter(real) {
-            let v = eigen.eigenvectors.column(*k);
-            matrix += v * v.transpose() / eigen.eigenvalues[*k];
-        }
-        let matrix = DMatrix::from_fn(m, m, |i, j| matrix[(i, j)] / (sizes[i] * sizes[j]));
-        Self { matrix }
+    /// The map of snapshots; none without any.
+    fn of(snapshots: &[Snapshot], modes: usize) -> Option<Self> {
+        let (newest, others) = snapshots.split_last()?;
+        let columns: Vec<Vec<f64>> = others.iter().map(|s| off(&s.worn, &newest.worn)).collect();
+        Some(Self { newest: newest.worn.clone(), matrix: inverse(&columns, modes), columns })
     }
 
     /// Weights of the snapshots for surfaces; they add up to one.
-    fn weights(&self, snapshots: &[Snapshot], worn: &[f64]) -> Vec<f64> {
-        let Some((newest, others)) = snapshots.split_last() else { return Vec::new() };
-        let from = off(worn, &newest.worn);
-        let products = DVector::from_iterator(
-            others.len(),
-            others.iter().map(|s| dot(&off(&s.worn, &newest.worn), &from)),
-        );
+    fn weights(&self, worn: &[f64]) -> Vec<f64> {
+        let from = off(worn, &self.newest);
+        let products = DVector::from_iterator(self.columns.len(), self.columns.iter().map(|c| dot(c, &from)));
         let mut c: Vec<f64> = (&self.matrix * products).iter().copied().collect();
         c.push(1.0 - c.iter().sum::<f64>());
         c
     }
+}
+
+/// Inverse of the products of columns with each other, on their leading modes.
+fn inverse(columns: &[Vec<f64>], modes: usize) -> DMatrix<f64> {
+    let m = columns.len();
+    if m == 0 {
+        return DMatrix::zeros(0, 0);
+    }
+    // Of unit length, so that near cycles, which tell most, are not drowned by far ones.
+    let sizes: Vec<f64> = columns.iter().map(|c| dot(c, c).sqrt()).collect();
+    let unit: Vec<Vec<f64>> =
+        columns.iter().zip(&sizes).map(|(c, size)| c.iter().map(|v| v / size).collect()).collect();
+    let eigen = DMatrix::from_fn(m, m, |i, j| dot(&unit[i], &unit[j])).symmetric_eigen();
+    let mut order: Vec<usize> = (0..m).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    let largest = eigen.eigenvalues[order[0]];
+    let mut matrix = DMatrix::zeros(m, m);
+    let real = |k: &&usize| eigen.eigenvalues[**k] > ROUNDING * ROUNDING * largest;
+    for k in order.iter().take(modes).filter(real) {
+        let v = eigen.eigenvectors.column(*k);
+        matrix += v * v.transpose() / eigen.eigenvalues[*k];
+    }
+    DMatrix::from_fn(m, m, |i, j| matrix[(i, j)] / (sizes[i] * sizes[j]))
 }
 
 /// What is predicted for surfaces.
@@ -119,19 +119,19 @@ impl Basis {
         if self.snapshots.iter().any(known) {
             return;
         }
-        self.modes = self.best_modes(&newest);
+        let modes = self.best_modes(&newest);
         if self.snapshots.len() == MOST {
             self.snapshots.remove(0);
         }
         self.snapshots.push(newest);
-        self.map = Some(Map::of(&self.snapshots, self.modes));
+        self.map = Map::of(&self.snapshots, modes);
     }
 
     /// The number of modes with which the newest cycle would have been predicted best.
     fn best_modes(&self, newest: &Snapshot) -> usize {
         let old = &self.snapshots;
         let miss = |modes: usize| {
-            let c = Map::of(old, modes).weights(old, &newest.worn);
+            let c = Map::of(old, modes).map_or_else(Vec::new, |map| map.weights(&newest.worn));
             let found = blended(&c, old.iter().map(|s| &s.speed));
             found.iter().zip(&newest.speed).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
         };
@@ -141,7 +141,7 @@ impl Basis {
     }
 
     fn weights(&self, worn: &[f64]) -> Vec<f64> {
-        self.map.as_ref().map_or_else(Vec::new, |map| map.weights(&self.snapshots, worn))
+        self.map.as_ref().map_or_else(Vec::new, |map| map.weights(worn))
     }
 
     /// Predicts a cycle with these surfaces (shell, then journal).
@@ -164,6 +164,6 @@ impl Basis {
         let of = |n: usize| blended(&c, self.snapshots.iter().map(|s| &s.rate.orbit.states[n]));
         let states = (0..newest.rate.orbit.steps()).map(of).collect();
         let parameters = blended(&c, self.snapshots.iter().map(|s| &s.rate.orbit.parameters));
-        Some(Orbit { states, parameters, ..newest.rate.orbit.clone() })
+        Some(Orbit { parameters, ..newest.rate.orbit.with_states(states) })
     }
 }

@@ -39,24 +39,33 @@ pub fn march_gradient(
     of: &[RunningInQuantity],
     cancel: &Cancel,
 ) -> Result<RunningInGradient, MarchError> {
+    let last = stages.last().ok_or_else(|| MarchError::Parameters("no stages".to_owned()))?;
+    let asked = Asked { stages, last, march, options, of, cancel };
     match engine.name {
-        EngineName::Adj => march_adjoint(stages, march, options, of, cancel),
-        EngineName::Tra => march_tangent(stages, march, options, of, cancel),
-        EngineName::Fw => differences(engine.steps, (0.0, 1.0), stages, march, options, of, cancel),
-        EngineName::Bw => differences(engine.steps, (-1.0, 0.0), stages, march, options, of, cancel),
-        EngineName::Cen => differences(engine.steps, (-1.0, 1.0), stages, march, options, of, cancel),
+        EngineName::Adj => march_adjoint(asked),
+        EngineName::Tra => march_tangent(asked),
+        EngineName::Fw => differences(engine.steps, (0.0, 1.0), asked),
+        EngineName::Bw => differences(engine.steps, (-1.0, 0.0), asked),
+        EngineName::Cen => differences(engine.steps, (-1.0, 1.0), asked),
     }
+}
+
+/// What every engine is asked: gradients of these quantities of this march.
+#[derive(Clone, Copy)]
+pub(super) struct Asked<'a> {
+    pub stages: &'a [Stage],
+    pub last: &'a Stage,
+    pub march: &'a March,
+    pub options: &'a MarchOptions,
+    pub of: &'a [RunningInQuantity],
+    pub cancel: &'a Cancel,
 }
 
 /// Differences between two sides, in steps from the variables; side 0 is the march itself.
 fn differences(
     steps: &[f64],
     sides: (f64, f64),
-    stages: &[Stage],
-    march: &March,
-    options: &MarchOptions,
-    of: &[RunningInQuantity],
-    cancel: &Cancel,
+    Asked { stages, march, options, of, cancel, .. }: Asked<'_>,
 ) -> Result<RunningInGradient, MarchError> {
     let (shares, variables) = (march.shares(stages), variable_count(stages));
     // As sharp as rounding allows: what settling leaves must be small against what a step changes.

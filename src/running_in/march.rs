@@ -105,6 +105,11 @@ pub(super) fn wanted_s(length_s: f64, error_m: f64, tolerance_m: f64) -> f64 {
     length_s * factor.clamp(CHANGE.0, CHANGE.1)
 }
 
+/// Length to go on with: a rest that is left over must not shorten what follows.
+pub(super) fn follows_s(length_s: f64, rest_s: f64, wanted_s: f64, before_s: Option<f64>) -> f64 {
+    if length_s < rest_s { wanted_s } else { wanted_s.max(before_s.unwrap_or(0.0)) }
+}
+
 /// A first guess of a length: it wears the surfaces by as much as a block may err by, and a little more.
 pub(super) fn first_guess_s(depths: &SurfaceField, tolerance_m: f64) -> f64 {
     let speed = largest(depths);
@@ -136,8 +141,7 @@ pub fn march(
                 walk.refused += 1;
                 h = wanted;
             };
-            // A rest that is left over must not shorten the blocks that follow.
-            length_s = Some(if h < rest_s { wanted } else { wanted.max(length_s.unwrap_or(0.0)) });
+            length_s = Some(follows_s(h, rest_s, wanted, length_s));
             gone_s += h;
             let (loss_w, worn_m) = (first.loss_w(), block.worn_m.clone());
             first = walk.accept(block, tell)?;

@@ -32,6 +32,7 @@ mod tangent;
 mod walk;
 
 pub use alpha::{approximation, weights};
+pub use field::{largest, new_surfaces};
 pub use gradient::{MarchEngine, RunningInGradient, march_gradient};
 pub use march::{Block, Course, End, March, Moment, march, replay};
 pub use predicted::{PredictedMarch, march_predicted};

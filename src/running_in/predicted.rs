@@ -12,8 +12,8 @@
 //! them stays in the basis. Solved cycles start from predicted ones.
 
 use super::basis::Basis;
-use super::field::{largest, moved};
-use super::march::{Course, SHORTEST, first_guess_s, wanted_s};
+use super::field::{flat, largest, moved, split};
+use super::march::{Course, SHORTEST, first_guess_s, follows_s, wanted_s};
 use super::stage::{MarchError, MarchOptions, Stage};
 use super::walk::Walk;
 use crate::cranktrain::SurfaceField;
@@ -29,10 +29,8 @@ const STEPS: usize = 32;
 pub struct PredictedMarch {
     /// How it went.
     pub course: Course,
-    /// Windows, each with one solved cycle.
+    /// Windows: each has one solved cycle, and a predicted one at its corrected end.
     pub windows: usize,
-    /// Cycles that were predicted where a march without predictions would have solved them.
-    pub predicted: usize,
     /// Largest error of the depth of any window, m.
     pub error_m: f64,
 }
@@ -51,23 +49,23 @@ pub fn march_predicted(
     tell: &mut dyn FnMut(f64),
 ) -> Result<PredictedMarch, MarchError> {
     let mut walk = Walk::new(stages, options, None, cancel)?;
-    let (mut windows, mut predicted, mut error_m) = (0, 0, 0.0f64);
+    let (mut windows, mut error_m) = (0, 0.0f64);
     let tolerance_m = SHARE * options.tolerance_m;
     let mut length_s = None;
     for (stage, at) in stages.iter().enumerate() {
         let mut basis = Basis::default();
         let first = walk.begin(stage)?;
         basis.add(&walk.worn_m, &options.depths(&first), first.clone());
-        let mut guess = first_guess_s(&options.depths(&first), options.tolerance_m);
+        let guess = first_guess_s(&options.depths(&first), options.tolerance_m);
         let (mut gone_s, mut loss_w) = (0.0, first.loss_w());
         while gone_s < at.duration_s * (1.0 - SHORTEST) {
             let rest_s = at.duration_s - gone_s;
             let mut h: f64 = length_s.unwrap_or(guess).min(rest_s);
             let (checked, wanted) = loop {
                 let reached = over(&basis, &walk.worn_m, h);
-                let k = flat_speed(&basis, &reached.worn_m);
-                let guess = basis.guess(&reached.worn_m);
-                let solved = walk.rate_from(stage, Some(&reached.worn_m), guess.as_ref())?;
+                let k = split(&basis.predict(&flat(&reached.worn_m)).speed, &reached.worn_m);
+                let near = basis.guess(&reached.worn_m);
+                let solved = walk.rate_from(stage, Some(&reached.worn_m), near.as_ref())?;
                 let depths = options.depths(&solved);
                 let error = 0.5 * h * largest(&moved(&depths, -1.0, &k));
                 basis.add(&reached.worn_m, &depths, solved.clone());
@@ -79,13 +77,12 @@ pub fn march_predicted(
                 walk.refused += 1;
                 h = wanted;
             };
-            guess = f64::INFINITY;
-            length_s = Some(if h < rest_s { wanted } else { wanted.max(length_s.unwrap_or(0.0)) });
+            length_s = Some(follows_s(h, rest_s, wanted, length_s));
             let before = walk.worn_m.clone();
             let corrected = over(&basis, &walk.worn_m, h);
             gone_s += h;
             walk.pass(stage, corrected.worn_m, corrected.energy_j, h, &checked)?;
-            (windows, predicted) = (windows + 1, predicted + 1);
+            windows += 1;
             tell(walk.from_s);
             if options.nothing_new(h, (loss_w, &before), (checked.loss_w(), &walk.worn_m)) {
                 break;
@@ -96,23 +93,12 @@ pub fn march_predicted(
         let end = walk.rate_from(stage, None, start.as_ref())?;
         walk.end(end);
     }
-    Ok(PredictedMarch { course: walk.finish()?.course, windows, predicted, error_m })
-}
-
-/// How fast the surfaces wear by prediction.
-fn flat_speed(basis: &Basis, worn_m: &SurfaceField) -> SurfaceField {
-    let flat: Vec<f64> = worn_m.shell.iter().chain(&worn_m.journal).copied().collect();
-    split(&basis.predict(&flat).speed, worn_m)
-}
-
-fn split(flat: &[f64], like: &SurfaceField) -> SurfaceField {
-    let (shell, journal) = flat.split_at(like.shell.len());
-    SurfaceField { shell: shell.to_vec(), journal: journal.to_vec() }
+    Ok(PredictedMarch { course: walk.finish()?.course, windows, error_m })
 }
 
 /// Over a window with what the basis predicts (Runge and Kutta's method of fourth order).
 fn over(basis: &Basis, from: &SurfaceField, length_s: f64) -> Reached {
-    let mut w: Vec<f64> = from.shell.iter().chain(&from.journal).copied().collect();
+    let mut w = flat(from);
     let (dt, mut energy_j) = (length_s / STEPS as f64, 0.0);
     let along =
         |w: &[f64], h: f64, k: &[f64]| -> Vec<f64> { w.iter().zip(k).map(|(w, k)| w + h * k).collect() };

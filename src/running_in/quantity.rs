@@ -1,6 +1,7 @@
 //! Numbers from a running-in, with what each part of the march is worth to them.
 
-use super::march::Course;
+use super::field::zeros;
+use super::march::{Course, March};
 use super::stage::Stage;
 use crate::cranktrain::{BearingParameter, JournalBearing, SurfaceField};
 use crate::film::Mesh;
@@ -49,6 +50,33 @@ pub struct Worth {
     pub area: f64,
 }
 
+/// What a block of a march is worth to a quantity.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BlockWorth {
+    /// By its energy.
+    pub energy: f64,
+    /// By its length, the energy aside.
+    pub duration: f64,
+    /// By the loss at its beginning, the energy aside.
+    pub first_loss: f64,
+}
+
+impl Worth {
+    /// The worth of block `k` of a march through a number of stages.
+    pub(super) fn of_block(&self, march: &March, k: usize, stages: usize) -> BlockWorth {
+        let stage = march.blocks[k].stage;
+        let begins = k == 0 || march.blocks[k - 1].stage != stage;
+        match stage + 1 == stages {
+            false => BlockWorth { energy: self.energy, duration: self.duration, first_loss: 0.0 },
+            true => BlockWorth {
+                energy: self.energy + self.last_energy,
+                duration: self.duration + self.last_duration,
+                first_loss: if begins { self.first_loss } else { 0.0 },
+            },
+        }
+    }
+}
+
 /// Volume worn off both surfaces of a bearing, m3.
 pub fn worn_volume_m3(worn_m: &SurfaceField, model: &JournalBearing) -> f64 {
     depth_sum_m(worn_m) * cell_area_m2(model)
@@ -61,7 +89,7 @@ fn depths(worn_m: &SurfaceField) -> impl Iterator<Item = f64> + Clone {
 
 /// Sum of the depths of all cells of both surfaces, m.
 fn depth_sum_m(worn_m: &SurfaceField) -> f64 {
-    worn_m.shell.iter().chain(&worn_m.journal).sum()
+    depths(worn_m).sum()
 }
 
 /// Area that a cell stands for, all copies of it together, m2.
@@ -109,12 +137,8 @@ impl RunningInQuantity {
     /// Its derivatives by what the march ends with.
     pub fn worth(self, course: &Course, model: &JournalBearing) -> Worth {
         let (first, last) = course.losses();
-        let zero = || SurfaceField {
-            shell: vec![0.0; course.worn_m.shell.len()],
-            journal: vec![0.0; course.worn_m.journal.len()],
-        };
         let t = course.duration_s;
-        let mut worth = Worth { worn: zero(), ..Worth::default() };
+        let mut worth = Worth { worn: zeros(&course.worn_m), ..Worth::default() };
         match self {
             Self::EnergyLost => worth.energy = 1.0,
             Self::MeanLoss => {
@@ -136,7 +160,7 @@ impl RunningInQuantity {
             Self::TimeToRunIn if !falls(first, last) => {}
             Self::TimeToRunIn => {
                 let (fall, value) = (first - last, self.value(course, model));
-                let (_, duration_s) = (course.last_energy_j, course.last_duration_s);
+                let duration_s = course.last_duration_s;
                 worth.last_energy = 1.0 / fall;
                 worth.last_loss = (value - duration_s) / fall;
                 worth.first_loss = -value / fall;

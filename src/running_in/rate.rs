@@ -39,8 +39,7 @@ impl Rate {
 
     /// The same without the states of the cycle.
     pub(super) fn without_states(&self) -> Self {
-        let mut orbit = Orbit { states: Vec::new(), ..self.orbit.clone() };
-        orbit.states = vec![Vec::new(); self.orbit.steps()];
+        let orbit = self.orbit.with_states(vec![Vec::new(); self.orbit.steps()]);
         Self { orbit, rubbing_w_m2: self.rubbing_w_m2.clone() }
     }
 

@@ -1,6 +1,6 @@
 //! A march on its way: surfaces, time, energy, blocks behind it, and how one block is attempted and accepted.
 
-use super::field::{largest, moved};
+use super::field::{largest, moved, new_surfaces};
 use super::march::{Block, Course, End, March, Moment};
 use super::rate::{Rate, settled_with_wear};
 use super::stage::{MarchError, MarchOptions, Stage};
@@ -39,10 +39,7 @@ impl<'a> Walk<'a> {
         cancel: &'a Cancel,
     ) -> Result<Self, MarchError> {
         let first = stages.first().ok_or_else(|| MarchError::Parameters("no stages".to_owned()))?;
-        let mut worn_m = first.model.blank_field();
-        if options.journal_share == 0.0 {
-            worn_m.journal.clear();
-        }
+        let worn_m = new_surfaces(&first.model, options.journal_share > 0.0);
         Ok(Self {
             stages,
             options,

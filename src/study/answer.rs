@@ -126,7 +126,7 @@ pub(super) fn objective(study: &Study, found: &Searched, known: &Known) -> Objec
     ObjectiveReport {
         quantity: objective_words(study),
         start_violation: match &found.run_in {
-            Some(end) => Some(end.start_violation).filter(|v| v.is_finite()),
+            Some(end) => end.start_violation,
             None => start_violation(study, plan),
         },
         start,

@@ -14,7 +14,7 @@ use super::{observe, robust, run_in};
 use crate::optimise::{Minimum, Outcome, curvature};
 use crate::report::{
     Assumption, CostReport, Curves, Findings, KktReport, ObjectiveReport, OutcomeReport, Provenance,
-    REPORT_FORMAT, Report, RunningInReport,
+    REPORT_FORMAT, Report,
 };
 use crate::run::{Cancel, Cost, Event, NoStore, RunContext, Store};
 use std::time::Instant;
@@ -47,9 +47,11 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
             findings.report.robust = robust::report(study, plan, &minimum.x, optimum, context);
         }
         findings.report.running_in = run_in::report(study, &searched, context);
-        if findings.report.running_in.as_ref().is_some_and(|r| r.limits.iter().any(|l| !l.met)) {
-            findings.report.objective.saving_percent = None;
-            spoil(&mut findings.report.running_in);
+        let report = &mut findings.report;
+        if let Some(r) = report.running_in.as_mut().filter(|r| r.limits.iter().any(|l| !l.met)) {
+            // As with its other limits.
+            report.objective.saving_percent = None;
+            r.minimised.iter_mut().for_each(|m| m.saving_percent = None);
         }
     }
     findings.report.choices = choices;
@@ -124,13 +126,6 @@ fn report(study: &Study, found: &Searched, known: Option<Known>, context: RunCon
     let total = simulations + gradients;
     findings.report.cost = CostReport { total, gradients, gradient_calls: minimum.gradients, seconds: 0.0 };
     findings
-}
-
-/// A design that breaks its limits on wear saves nothing.
-fn spoil(running_in: &mut Option<RunningInReport>) {
-    if let Some(minimised) = running_in.as_mut().and_then(|r| r.minimised.as_mut()) {
-        minimised.saving_percent = None;
-    }
 }
 
 fn failed(study: &Study, reason: String, began: Instant) -> Findings {

@@ -15,8 +15,8 @@ use crate::report::{
 };
 use crate::run::{Event, RunContext};
 use crate::running_in::{
-    Block, Course, MarchError, Rate, RunningInQuantity, Stage, falls, march, march_predicted,
-    settled_with_wear, worn_volume_m3,
+    Block, Course, MarchError, Rate, RunningInQuantity, Stage, falls, largest, march, march_predicted,
+    new_surfaces, settled_with_wear, worn_volume_m3,
 };
 use crate::units::tidy;
 
@@ -130,7 +130,7 @@ fn bearing(
     let went = match wanted.predicted {
         true => march_predicted(&stages, &options, context.cancel, &mut tell).map(|march| {
             found.count = march.windows;
-            found.predicted_cycles = Some(march.predicted);
+            found.predicted_cycles = Some(march.windows);
             found.largest_error_um = march.error_m * 1e6;
             march.course
         }),
@@ -175,8 +175,7 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
     found.mean_loss_w = value(RunningInQuantity::MeanLoss);
     (found.first_loss_w, found.final_loss_w) = (first, last);
     found.wear_volume_mm3 = value(RunningInQuantity::WearVolume) * 1e9;
-    let deepest = |f: &SurfaceField| f.shell.iter().chain(&f.journal).copied().fold(0.0, f64::max);
-    found.max_wear_depth_um = deepest(&course.worn_m) * 1e6;
+    found.max_wear_depth_um = largest(&course.worn_m) * 1e6;
     found.time_to_run_in_h = falls(first, last).then(|| value(RunningInQuantity::TimeToRunIn) / HOUR_S);
     found.wear_depth_um = whole_width(model, &course.worn_m.shell, 1e6);
     found.journal_wear_depth_um = whole_width(model, &course.worn_m.journal, 1e6);
@@ -192,7 +191,7 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
             contact_share: rate.contact_share(),
             min_film_thickness_um: state.min_film_thickness_um,
             max_contact_pressure_mpa: state.max_contact_pressure_mpa,
-            max_wear_depth_um: deepest(worn) * 1e6,
+            max_wear_depth_um: largest(worn) * 1e6,
             wear_volume_mm3: worn_volume_m3(worn, model) * 1e9,
         }
     };
@@ -230,9 +229,7 @@ fn before_after(
         let settled = |worn: &SurfaceField, near| {
             settled_with_wear(&model, worn, &study.orbit, near, context.cancel).ok()
         };
-        // Zeros instead of nothing, so that both are judged by the same cells.
-        let blank = SurfaceField { shell: model.blank_field().shell, journal: Vec::new() };
-        let new = settled(&blank, None)?;
+        let new = settled(&new_surfaces(&model, false), None)?;
         let run_in = settled(&course.worn_m, Some(&new.orbit));
         Some(BeforeAfter {
             operating_point: point.name.clone(),

@@ -10,7 +10,7 @@ use crate::cranktrain::{BearingOutput, BearingSetup, JournalBearing, SurfaceFiel
 use crate::orbit::{Orbit, OrbitOptions};
 use crate::report::{ProfileReport, StribeckPoint};
 use crate::run::Cancel;
-use crate::running_in::{Stage, settled_with_wear};
+use crate::running_in::{Stage, new_surfaces, settled_with_wear};
 use std::sync::Arc;
 
 /// Speeds of the curve, as shares of that of the last stage; the first is where the search begins.
@@ -48,7 +48,6 @@ pub(super) fn stribeck(
     options: &OrbitOptions,
     cancel: &Cancel,
 ) -> Vec<StribeckPoint> {
-    let blank = SurfaceField { shell: last.model.blank_field().shell, journal: Vec::new() };
     let curve = |worn: &SurfaceField| -> Vec<Option<f64>> {
         let mut near: Option<Orbit> = None;
         let mut at = |share: f64| {
@@ -62,7 +61,7 @@ pub(super) fn stribeck(
         };
         SPEEDS.iter().map(|share| at(*share)).collect()
     };
-    let (new, run_in) = rayon::join(|| curve(&blank), || curve(worn_m));
+    let (new, run_in) = rayon::join(|| curve(&new_surfaces(&last.model, false)), || curve(worn_m));
     let rpm = last.model.setup().speed_rad_s * 30.0 / std::f64::consts::PI;
     let mut points: Vec<StribeckPoint> = (SPEEDS.iter().zip(new).zip(run_in))
         .map(|((share, new), run_in)| StribeckPoint { speed_rpm: share * rpm, new, run_in })

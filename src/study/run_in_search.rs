@@ -4,6 +4,7 @@
 use super::build::Plan;
 use super::check::Study;
 use super::keep::Keep;
+use super::programme::programme;
 use super::running_in::RunningInPlan;
 use super::running_in_design::{Proof, RunningInProblem, Work};
 use super::seek::End;
@@ -12,7 +13,7 @@ use crate::optimise::{
 };
 use crate::report::ApproximationReport;
 use crate::run::{Event, RunContext};
-use crate::running_in::{Stage, weights};
+use crate::running_in::weights;
 use std::time::Instant;
 
 /// Largest share of the blocks that groups may be, to be worth a leg of their own.
@@ -29,8 +30,8 @@ const MOST_LEGS: usize = 3;
 pub(super) struct RunInEnd {
     /// The minimised quantity at the study's start design.
     pub start: f64,
-    /// Largest relative violation of any limit there.
-    pub start_violation: f64,
+    /// Largest relative violation of any limit there; none if it is not known.
+    pub start_violation: Option<f64>,
     /// The leg with the approximation, if there was one.
     pub approximation: Option<ApproximationReport>,
     /// The gradient at the design found.
@@ -59,37 +60,35 @@ pub(super) fn seek_run_in(
 ) -> Result<End, String> {
     let legs = Legs { study, wanted, plan, options, keep, context, began: Instant::now() };
     let known = legs.problem(start, 0).and_then(|p| p.objective(start).map(|value| (p, value)));
-    let (mut problem, start_value) = match known {
+    let (mut problem, here) = match known {
         Ok(known) => known,
         Err(e) => return Ok(ended(stopped(start, &e), Work::default(), None)),
     };
-    let start_violation = problem.values(&plan.start).map_or(f64::NAN, |v| v.violation());
     // What is saved is saved against the study's start, wherever this search began.
-    let start_value =
-        if plan.start == start { start_value } else { problem.objective(&plan.start).unwrap_or(start_value) };
+    let study_start = problem.values(&plan.start).ok();
     let mut marches = Work::default();
     let (mut minimum, mut rough, mut proof): (Option<Minimum>, _, _) = (None, None, None);
     let (blocks, groups) = problem.sizes();
     if wanted.approximate_first && groups as f64 <= WORTHWHILE * blocks as f64 {
         let (near, approximated) = legs.approximate(&problem, start)?;
-        let next = if near.values.is_some() && near.outcome != Outcome::Cancelled {
-            legs.problem(&near.x, 1)
-        } else {
-            Err(EvaluationError::Cancelled)
-        };
         let iterations = near.history.len();
-        let went_on = !matches!(next, Err(EvaluationError::Cancelled));
+        let goes_on = near.values.is_some() && near.outcome != Outcome::Cancelled;
+        let next = goes_on.then(|| legs.problem(&near.x, 1));
+        let went_on = matches!(next, Some(Ok(_) | Err(EvaluationError::Failed(_))));
         match next {
-            Ok(next) => {
+            Some(Ok(next)) => {
                 marches += std::mem::replace(&mut problem, next).work();
                 minimum = Some(near);
             }
             // Where the march cannot follow, it begins at the start.
-            Err(EvaluationError::Failed(_)) => {}
-            Err(EvaluationError::Cancelled) => {
-                let outcome = if near.values.is_some() { Outcome::Cancelled } else { near.outcome };
-                minimum = Some(Minimum { outcome, ..near });
+            Some(Err(EvaluationError::Failed(_))) => {}
+            Some(Err(EvaluationError::Cancelled)) => {
                 marches += problem.work();
+                minimum = Some(Minimum { outcome: Outcome::Cancelled, ..near });
+            }
+            None => {
+                marches += problem.work();
+                minimum = Some(near);
             }
         }
         rough = Some((approximated, iterations, went_on));
@@ -100,11 +99,29 @@ pub(super) fn seek_run_in(
     }
     let minimum = minimum.ok_or("there was no search")?;
     let approximation = rough.map(|(rough, iterations, final_leg)| {
-        let report = legs.report(&rough, start, start_value, (blocks, iterations), marches);
+        let exact = [Some(here), minimum.values.as_ref().filter(|_| final_leg).map(|v| v.objective)];
+        let error = |x: &[f64], exact: f64| rough.objective(x).ok().map(|a| 100.0 * (a / exact - 1.0));
+        let [at_start, at_end] = exact;
+        let report = ApproximationReport {
+            blocks,
+            groups,
+            alpha: legs.alpha(&rough, start),
+            start_error_percent: at_start.and_then(|exact| error(start, exact)).unwrap_or_default(),
+            design_error_percent: at_end.and_then(|exact| error(&minimum.x, exact)),
+            iterations: iterations as u64,
+            simulations: rough.work().marches.simulations,
+            march_simulations: marches.marches.simulations,
+            final_leg,
+        };
         marches += rough.work();
-        finished(report, &rough, &minimum, final_leg)
+        report
     });
-    let run_in = Some(RunInEnd { start: start_value, start_violation, approximation, proof });
+    let run_in = Some(RunInEnd {
+        start: study_start.as_ref().map_or(here, |v| v.objective),
+        start_violation: study_start.map(|v| v.violation()),
+        approximation,
+        proof,
+    });
     Ok(ended(minimum, marches, run_in))
 }
 
@@ -169,47 +186,46 @@ impl<'a, 'r> Legs<'a, 'r> {
         mut minimum: Option<Minimum>,
         marches: &mut Work,
     ) -> Result<(Minimum, Option<Proof>), String> {
-        for leg in 2.. {
+        let mut leg = 1;
+        let ended = loop {
+            leg += 1;
             let from = minimum.as_ref().map_or(start, |m: &Minimum| &m.x).to_vec();
             let options = SearchOptions { budget: self.left(minimum.as_ref()), ..*self.options };
             let end = search(&problem, &from, &options).map_err(|e| e.to_string())?;
             let mut end = joined(minimum, end);
-            let usable = end.values.is_some() && end.outcome != Outcome::Cancelled;
-            if !usable || end.outcome == Outcome::BudgetSpent {
-                *marches += problem.work();
-                return Ok((end, None));
+            if end.values.is_none() || matches!(end.outcome, Outcome::Cancelled | Outcome::BudgetSpent) {
+                break (end, None);
             }
             let next = match self.problem(&end.x, leg) {
                 Ok(next) => next,
                 Err(EvaluationError::Cancelled) => {
-                    *marches += problem.work();
-                    return Ok((Minimum { outcome: Outcome::Cancelled, ..end }, None));
+                    break (Minimum { outcome: Outcome::Cancelled, ..end }, None);
                 }
                 Err(EvaluationError::Failed(reason)) => {
                     end.failures
                         .push(format!("the design found cannot be marched in blocks of its own: {reason}"));
-                    *marches += problem.work();
-                    return Ok((Minimum { outcome: Outcome::NoProgress, ..end }, None));
+                    break (Minimum { outcome: Outcome::NoProgress, ..end }, None);
                 }
             };
             let apart = problem.apart(&end.x, &next).unwrap_or(f64::INFINITY);
-            if apart <= AGREES || leg > MOST_LEGS {
-                *marches += next.work();
-                if apart > AGREES {
-                    let percent = crate::report::short(100.0 * apart);
-                    end.failures.push(format!(
-                        "marched in blocks of its own the design found differs by {percent} %; reduce running_in.wear_depth_tolerance"
-                    ));
-                    end.outcome = Outcome::NoProgress;
-                }
-                let proof = problem.proof(&end.x).ok();
-                *marches += problem.work();
-                return Ok((end, proof));
+            if apart > AGREES && leg <= MOST_LEGS {
+                *marches += std::mem::replace(&mut problem, next).work();
+                minimum = Some(end);
+                continue;
             }
-            *marches += std::mem::replace(&mut problem, next).work();
-            minimum = Some(end);
-        }
-        Err("there was no leg".to_owned())
+            *marches += next.work();
+            if apart > AGREES {
+                let percent = crate::report::short(100.0 * apart);
+                end.failures.push(format!(
+                    "marched in blocks of its own the design found differs by {percent} %; reduce running_in.wear_depth_tolerance"
+                ));
+                end.outcome = Outcome::NoProgress;
+            }
+            let proof = problem.proof(&end.x).ok();
+            break (end, proof);
+        };
+        *marches += problem.work();
+        Ok(ended)
     }
 
     /// What earlier legs left of the budget.
@@ -240,42 +256,10 @@ impl<'a, 'r> Legs<'a, 'r> {
         Ok((near, rough))
     }
 
-    fn report(
-        &self,
-        rough: &RunningInProblem,
-        start: &[f64],
-        exact: f64,
-        (blocks, iterations): (usize, usize),
-        marches: Work,
-    ) -> ApproximationReport {
-        let of = |stages: Vec<Stage>| rough.blocks().first().map(|own| weights(own, &stages));
-        let stages = super::programme::stages(self.study, self.wanted, self.plan, 0, start);
-        let at_start = rough.objective(start).unwrap_or(exact);
-        ApproximationReport {
-            blocks,
-            groups: super::running_in_design::count(rough.blocks()),
-            alpha: stages.ok().and_then(of).unwrap_or_default(),
-            start_error_percent: 100.0 * (at_start / exact - 1.0),
-            design_error_percent: None,
-            iterations: iterations as u64,
-            simulations: 0,
-            march_simulations: marches.marches.simulations,
-            final_leg: false,
-        }
+    /// The weights of the first bearing's groups, which were chosen at a start.
+    fn alpha(&self, rough: &RunningInProblem, start: &[f64]) -> Vec<f64> {
+        let stages = programme(self.study, self.wanted, start);
+        let durations_s: Vec<f64> = stages.iter().map(|s| s.duration_s).collect();
+        rough.blocks().first().map_or_else(Vec::new, |own| weights(own, &durations_s))
     }
-}
-
-/// The report of the approximation with what is known in the end.
-fn finished(
-    mut report: ApproximationReport,
-    rough: &RunningInProblem,
-    end: &Minimum,
-    final_leg: bool,
-) -> ApproximationReport {
-    let exact = end.values.as_ref().filter(|_| final_leg).map(|v| v.objective);
-    let found = exact.and_then(|exact| rough.objective(&end.x).ok().map(|a| 100.0 * (a / exact - 1.0)));
-    report.design_error_percent = found;
-    report.simulations = rough.work().marches.simulations;
-    report.final_leg = final_leg;
-    report
 }

@@ -214,36 +214,22 @@ fn march_plan(r: &mut RunningInFile, faults: &mut Faults) -> RunningInPlan {
 
 /// The limits of a running-in design.
 fn limits(r: &RunningInFile, faults: &mut Faults) -> Vec<WearLimit> {
+    let at = |key: &str| join(PATH, key);
+    let depth = faults.get(&r.max_wear_depth, &at("max_wear_depth")).map(|v| v.si());
+    let volume = faults.get(&r.max_wear_volume, &at("max_wear_volume")).map(|v| v.si());
+    let energy = faults.get(&r.max_energy_lost, &at("max_energy_lost")).map(|v| v.si());
+    let loss = faults.get(&r.max_final_loss, &at("max_final_loss")).map(|v| v.si());
+    let time = faults.get(&r.max_time_to_run_in, &at("max_time_to_run_in")).map(|v| v.si());
     let all = [
-        (
-            faults.get(&r.max_wear_depth, &join(PATH, "max_wear_depth")).map(|v| v.si()),
-            ("max-wear-depth", RunningInQuantity::MaxDepth(SHARPNESS), "um", 1e6),
-        ),
-        (
-            faults.get(&r.max_wear_volume, &join(PATH, "max_wear_volume")).map(|v| v.si()),
-            ("wear-volume", RunningInQuantity::WearVolume, "mm3", 1e9),
-        ),
-        (
-            faults.get(&r.max_energy_lost, &join(PATH, "max_energy_lost")).map(|v| v.si()),
-            ("energy-lost", RunningInQuantity::EnergyLost, "kJ", 1e-3),
-        ),
-        (
-            faults.get(&r.max_final_loss, &join(PATH, "max_final_loss")).map(|v| v.si()),
-            ("final-loss", RunningInQuantity::FinalLoss, "W", 1.0),
-        ),
-        (
-            faults.get(&r.max_time_to_run_in, &join(PATH, "max_time_to_run_in")).map(|v| v.si()),
-            ("time-to-run-in", RunningInQuantity::TimeToRunIn, "h", 1.0 / 3600.0),
-        ),
+        ("max_wear_depth", depth, "max-wear-depth", RunningInQuantity::MaxDepth(SHARPNESS), "um", 1e6),
+        ("max_wear_volume", volume, "wear-volume", RunningInQuantity::WearVolume, "mm3", 1e9),
+        ("max_energy_lost", energy, "energy-lost", RunningInQuantity::EnergyLost, "kJ", 1e-3),
+        ("max_final_loss", loss, "final-loss", RunningInQuantity::FinalLoss, "W", 1.0),
+        ("max_time_to_run_in", time, "time-to-run-in", RunningInQuantity::TimeToRunIn, "h", 1.0 / HOUR_S),
     ];
     let mut found = Vec::new();
-    for (limit, (name, quantity, unit, scale)) in all {
-        let key = if name.starts_with("max-") {
-            name.replace('-', "_")
-        } else {
-            format!("max_{}", name.replace('-', "_"))
-        };
-        faults.range(limit, &join(PATH, &key), |v| v > 0.0, "above zero");
+    for (key, limit, name, quantity, unit, scale) in all {
+        faults.range(limit, &at(key), |v| v > 0.0, "above zero");
         found.extend(limit.map(|limit| WearLimit { quantity, name, limit, unit, scale }));
     }
     found

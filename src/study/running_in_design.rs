@@ -75,6 +75,16 @@ struct Memory {
     work: Work,
 }
 
+impl Memory {
+    fn saved(keep: &Keep) -> Option<Self> {
+        postcard::from_bytes(&keep.load()?).ok()
+    }
+
+    fn save(&self, keep: &Keep) {
+        keep.save(&postcard::to_stdvec(self).unwrap_or_default());
+    }
+}
+
 /// The problem; see the module page.
 pub(super) struct RunningInProblem<'p, 'r> {
     study: &'p Study,
@@ -110,7 +120,7 @@ fn quantities(wanted: &RunningInPlan) -> Vec<RunningInQuantity> {
 const BESIDE: f64 = 1e-5;
 
 /// Number of blocks.
-pub(super) fn count(blocks: &Blocks) -> usize {
+fn count(blocks: &Blocks) -> usize {
     blocks.iter().flatten().map(Vec::len).sum()
 }
 
@@ -126,12 +136,11 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
     ) -> Result<Self, EvaluationError> {
         let options: Vec<MarchOptions> =
             (0..study.bearings.len()).map(|b| march_options(study, wanted, b)).collect();
-        let saved = keep.load().and_then(|bytes| postcard::from_bytes::<Memory>(&bytes).ok());
-        let memory = match saved {
+        let memory = match Memory::saved(&keep) {
             Some(memory) => memory,
             None => {
                 let memory = first_march(study, wanted, plan, start, &options, context)?;
-                keep.save(&postcard::to_stdvec(&memory).unwrap_or_default());
+                memory.save(&keep);
                 memory
             }
         };
@@ -143,8 +152,8 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
     /// The same with groups of its blocks: `P_alpha` in place of `P_wear`.
     pub fn approximated(&self, keep: Keep<'p>) -> Self {
         let groups = open(&self.memory).groups.clone();
-        let saved = keep.load().and_then(|bytes| postcard::from_bytes::<Memory>(&bytes).ok());
-        let memory = saved.unwrap_or_else(|| Memory { blocks: groups.clone(), ..Memory::default() });
+        let memory =
+            Memory::saved(&keep).unwrap_or_else(|| Memory { blocks: groups.clone(), ..Memory::default() });
         Self {
             study: self.study,
             wanted: self.wanted,
@@ -253,7 +262,7 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
         if let Some(found) = memory.found.iter_mut().find(|f| f.x == x) {
             found.rows = Some(all.clone());
         }
-        self.keep.save(&postcard::to_stdvec(&*memory).unwrap_or_default());
+        memory.save(&self.keep);
         Ok(all)
     }
 

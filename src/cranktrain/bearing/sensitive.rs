@@ -7,8 +7,8 @@ use super::operation::Answer;
 use super::{BearingOutput, JournalBearing};
 use crate::dae::{At, Cotangent, Direction, SensitiveDae};
 use crate::film::{
-    FilmChange, FilmCotangent, FilmInput, FilmOutput, FilmPlace, FilmPoint, FilmSite, FilmWeights, Mesh,
-    Wanted,
+    FilmChange, FilmCotangent, FilmInput, FilmOutput, FilmPlace, FilmPoint, FilmSite, FilmTangent,
+    FilmWeights, Mesh, Wanted,
 };
 use crate::math::Singular;
 
@@ -43,6 +43,29 @@ impl JournalBearing {
                 du.tilt_rad[a] += dz[n + 2 + a];
             }
         }
+    }
+
+    /// What the film sees of a direction, and what that does to its outputs.
+    fn film_outputs_along(
+        &self,
+        point: &BearingPoint,
+        at: At,
+        direction: Direction,
+    ) -> (FilmInput, FilmTangent) {
+        let (n, site) = (self.layout.n, point.site(&self.shell_left));
+        let (mut input, shape_m) = self.seen_along(point.journal_angle_rad, direction.u);
+        self.add_motions(direction.z, &mut input);
+        input.velocity_m_s = [direction.rate[n], direction.rate[n + 1]];
+        self.faster(at, direction.u[SPEED], &mut input);
+        let change = FilmChange {
+            q: &direction.z[..n],
+            rate: &[],
+            input,
+            shape_m: &shape_m,
+            shell_left: self.left_along(direction.u),
+        };
+        let wanted = Wanted { residual: false, content: false, output: true };
+        (input, self.setup.film.tangent_at(&self.place(point, &site, at), &change, wanted))
     }
 
     /// Adds derivatives by the input's motions to derivatives by the state.
@@ -205,23 +228,9 @@ impl SensitiveDae for JournalBearing {
     }
 
     fn output_tangent(&self, point: &BearingPoint, at: At, direction: Direction, dy: &mut [f64]) {
-        let (n, site) = (self.layout.n, point.site(&self.shell_left));
-        let (mut input, shape_m) = self.seen_along(point.journal_angle_rad, direction.u);
-        let [width, diameter] = [input.width_m, input.diameter_m];
-        self.add_motions(direction.z, &mut input);
-        input.velocity_m_s = [direction.rate[n], direction.rate[n + 1]];
-        self.faster(at, direction.u[SPEED], &mut input);
-        let change = FilmChange {
-            q: &direction.z[..n],
-            rate: &[],
-            input,
-            shape_m: &shape_m,
-            shell_left: self.left_along(direction.u),
-        };
-        let wanted = Wanted { residual: false, content: false, output: true };
-        let d = self.setup.film.tangent_at(&self.place(point, &site, at), &change, wanted);
+        let (input, d) = self.film_outputs_along(point, at, direction);
         self.outputs_of(at.t_s, &d.output, dy);
-        let shrink = width / self.setup.width_m + diameter / self.setup.diameter_m;
+        let shrink = input.width_m / self.setup.width_m + input.diameter_m / self.setup.diameter_m;
         dy[BearingOutput::FilmTemperature.index()] = direction.u[FILM_TEMPERATURE];
         dy[BearingOutput::SpecificLoad.index()] = -self.specific_load_pa(at.t_s) * shrink;
         if self.operation_varies() {
@@ -244,18 +253,7 @@ impl SensitiveDae for JournalBearing {
         sums: &mut [f64],
     ) {
         let (site, cells) = (point.site(&self.shell_left), sums.len() / 2);
-        let (mut input, shape_m) = self.seen_along(point.journal_angle_rad, direction.u);
-        self.add_motions(direction.z, &mut input);
-        self.faster(at, direction.u[SPEED], &mut input);
-        let change = FilmChange {
-            q: &[],
-            rate: &[],
-            input,
-            shape_m: &shape_m,
-            shell_left: self.left_along(direction.u),
-        };
-        let wanted = Wanted { residual: false, content: false, output: true };
-        let d = self.setup.film.tangent_at(&self.place(point, &site, at), &change, wanted);
+        let (input, d) = self.film_outputs_along(point, at, direction);
         let mut contact = vec![0.0; cells];
         self.setup.film.contact_pa(&site, &mut contact);
         let (u, du) = (&site.input, &input);

@@ -189,7 +189,7 @@ section! {
         stages: Vec<Given<StageFile>>,
         /// Searches a running-in design: "mean-loss" (over the programme), "energy-lost" or "final-loss" is minimised instead of the loss of new surfaces at the operating points, where the limits hold all the same. Default: the design is searched without regard to wear and run in afterwards.
         minimise: RunningInGoalName,
-        /// Largest wear depth of any shell. For a running-in design.
+        /// Largest wear depth of any shell or journal. For a running-in design.
         max_wear_depth: Length,
         /// Largest volume worn off any bearing. For a running-in design.
         max_wear_volume: Volume,
