@@ -240,6 +240,30 @@ fn a_running_in_design_loses_less_within_its_wear_limits() {
 }
 
 #[test]
+fn limits_on_the_run_in_bearing_hold_in_the_end_and_not_before() {
+    // Without this limit the film in the end is 0.52 um thick.
+    let asked = "minimise = \"mean-loss\"\nwear_depth_tolerance = \"0.1 um\"\n\
+        constraints = [{ quantity = \"min-film-thickness\", at_least = \"0.57 um\" }]\n";
+    let free = (
+        "quantity = \"contact-loss\"\nat_most = \"50 W\"",
+        "quantity = \"side-flow\"\nat_most = \"1000 l/min\"",
+    );
+    let coarser = ("steps_per_cycle = 240", "steps_per_cycle = 120");
+    let study = running_in_study(asked, "", &[coarser, free]);
+    let report = quietly(|context| stribeck::study::run(&study, context)).report;
+    let running_in = report.running_in.as_ref().unwrap();
+    let (limit, bearing) = (&running_in.limits[0], &running_in.bearings[0]);
+    println!("{:?} {limit:?} {:?}", report.outcome.status, bearing.operating_points);
+    assert_eq!(report.outcome.status, stribeck::optimise::Outcome::Converged);
+    assert_eq!((limit.quantity.as_str(), limit.sense.as_str()), ("min-film-thickness-run-in", "at least"));
+    assert!(limit.met && limit.active && limit.price_w_per_unit > 0.0, "{limit:?}");
+    assert!(bearing.operating_points[0].new.min_film_thickness_um < 0.5, "it holds when run in, not before");
+    // The design marched anew keeps it, to what its blocks leave.
+    let last = bearing.blocks.last().unwrap();
+    assert!((last.min_film_thickness_um / limit.value - 1.0).abs() < 0.02, "{last:?} {limit:?}");
+}
+
+#[test]
 fn the_programme_is_designed_with_the_bearing_and_the_approximation_leads_to_the_same_design() {
     let more =
         "[[parameters]]\nname = \"running_in.rated.duration\"\nlower = \"0.25 h\"\nupper = \"3 h\"\n\n";

@@ -4,7 +4,7 @@ use crate::common::{COARSE, main_study, quietly};
 use crate::running_in::{leaning, options, stage};
 use std::sync::Arc;
 use stribeck::cranktrain::{
-    BearingLoad, BearingParameter, BearingSetup, Cylinder, JournalBearing, Smoothing,
+    BearingLoad, BearingOutput, BearingParameter, BearingSetup, Cylinder, JournalBearing, Smoothing,
 };
 use stribeck::dae::Dae;
 use stribeck::gradient::{EngineName, engine};
@@ -15,14 +15,22 @@ use stribeck::running_in::{
 };
 use stribeck::study::plan;
 
-const ALL: [RunningInQuantity; 6] = [
-    RunningInQuantity::EnergyLost,
-    RunningInQuantity::MeanLoss,
-    RunningInQuantity::FinalLoss,
-    RunningInQuantity::WearVolume,
-    RunningInQuantity::MaxDepth(50.0),
-    RunningInQuantity::TimeToRunIn,
-];
+fn all() -> [RunningInQuantity; 9] {
+    let in_the_end = |output: BearingOutput, reduction| {
+        RunningInQuantity::Final(Quantity { output: output.index(), reduction })
+    };
+    [
+        RunningInQuantity::EnergyLost,
+        RunningInQuantity::MeanLoss,
+        RunningInQuantity::final_loss(),
+        RunningInQuantity::WearVolume,
+        RunningInQuantity::MaxDepth(50.0),
+        RunningInQuantity::TimeToRunIn,
+        in_the_end(BearingOutput::GapMin, Reduction::SmoothMin(100.0)),
+        in_the_end(BearingOutput::PressurePeak, Reduction::SmoothMax(100.0)),
+        in_the_end(BearingOutput::ContactPeak, Reduction::SmoothMax(100.0)),
+    ]
+}
 
 /// A bearing that has load factor and speed as its last parameters.
 fn operated(model: &JournalBearing, speed_rad_s: f64, load_factor: f64) -> JournalBearing {
@@ -86,13 +94,13 @@ impl Programme {
     fn gradient(&self, name: EngineName) -> Vec<Vec<f64>> {
         let engine = MarchEngine { name, steps: &self.steps };
         let (stages, cancel) = (&self.stages, Cancel::default());
-        march_gradient(engine, stages, &self.found, &self.options, &ALL, &cancel).unwrap().rows
+        march_gradient(engine, stages, &self.found, &self.options, &all(), &cancel).unwrap().rows
     }
 
     /// What settling leaves of a quantity, over the step of a difference: it counts where little is asked of a large value.
     fn noise(&self, quantity: usize, variable: usize) -> f64 {
         let (first, last) = self.found.course.losses();
-        let left = match ALL[quantity] {
+        let left = match all()[quantity] {
             RunningInQuantity::TimeToRunIn => 1e-12 * self.found.course.energy_j / (first - last).abs(),
             of if self.names[variable].ends_with("duration") => {
                 1e-10 * of.value(&self.found.course, &self.stages[1].model).abs()
@@ -108,7 +116,7 @@ impl Programme {
         for (q, (found, adj)) in self.gradient(name).iter().zip(adj).enumerate() {
             for (v, (d, a)) in found.iter().zip(adj).enumerate() {
                 let miss = ((d - a).abs() - self.noise(q, v)).max(0.0) / a.abs().max(f64::MIN_POSITIVE);
-                println!("{:?} by {}: ADJ {a:.8e}, {name:?} {miss:.1e}", ALL[q], self.names[v]);
+                println!("{:?} by {}: ADJ {a:.8e}, {name:?} {miss:.1e}", all()[q], self.names[v]);
                 worst = worst.max(miss);
             }
         }
@@ -137,8 +145,8 @@ fn tra_and_adj_agree_on_every_quantity_of_a_running_in() {
         for (q, (tra, adj)) in tra.iter().zip(&adj).enumerate() {
             for (v, (t, a)) in tra.iter().zip(adj).enumerate() {
                 let miss = (t - a).abs() / a.abs();
-                println!("share {journal_share}, {:?} by {}: {a:.9e} {miss:.1e}", ALL[q], at.names[v]);
-                assert!((t - a).abs() <= 1e-9 * a.abs(), "{:?} by {}: {t} {a}", ALL[q], at.names[v]);
+                println!("share {journal_share}, {:?} by {}: {a:.9e} {miss:.1e}", all()[q], at.names[v]);
+                assert!((t - a).abs() <= 1e-9 * a.abs(), "{:?} by {}: {t} {a}", all()[q], at.names[v]);
             }
         }
         // Where wear smooths the shell the loss falls, and its time constant has a gradient.
@@ -184,7 +192,7 @@ fn load_factor_and_speed_are_parameters_like_any_other() {
         let cancel = Cancel::default();
         let orbit = settle(&model, &options, None, &cancel).unwrap();
         let of: Vec<Quantity> = (0..model.outputs())
-            .filter(|o| *o != stribeck::cranktrain::BearingOutput::Rubbing.index())
+            .filter(|o| *o != BearingOutput::Rubbing.index())
             .flat_map(|output| {
                 [Reduction::Mean, Reduction::SmoothMax(20.0)].map(|reduction| Quantity { output, reduction })
             })

@@ -158,7 +158,8 @@ fn running_in(report: &Report) -> Option<String> {
             (true, false) => String::new(),
         };
         let (value, limit) = (short(l.value), short(l.limit));
-        words += &format!("\n{} of {}: {value}, at most {limit} {}{state}", l.quantity, l.bearing, l.unit);
+        words +=
+            &format!("\n{} of {}: {value}, {} {limit} {}{state}", l.quantity, l.bearing, l.sense, l.unit);
     }
     Some(format!("{rows}{words}{failures}"))
 }

@@ -44,10 +44,15 @@ pub struct Limit {
 impl Limit {
     /// The constraint `c <= 0` and its derivative by the quantity.
     pub(super) fn constraint(&self, value: f64) -> (f64, f64) {
-        match self.sense {
-            Sense::AtLeast => (1.0 - value / self.limit, -1.0 / self.limit),
-            Sense::AtMost => (value / self.limit - 1.0, 1.0 / self.limit),
-        }
+        relative_excess(self.sense, self.limit, value)
+    }
+}
+
+/// The relative excess `c <= 0` of a value over a limit, and its derivative by the value.
+pub fn relative_excess(sense: Sense, limit: f64, value: f64) -> (f64, f64) {
+    match sense {
+        Sense::AtLeast => (1.0 - value / limit, -1.0 / limit),
+        Sense::AtMost => (value / limit - 1.0, 1.0 / limit),
     }
 }
 

@@ -92,7 +92,7 @@ mod starts;
 mod state;
 mod worst;
 
-pub use case::{Case, Evaluated, Limit, Sense};
+pub use case::{Case, Evaluated, Limit, Sense, relative_excess};
 pub use curvature::{Curvature, curvature};
 pub use design::DesignProblem;
 pub use linear::{LinearConstraint, Relation};

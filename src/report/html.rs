@@ -1,6 +1,7 @@
 //! `report.html`: one self-contained page, the answer first, then the evidence.
 
 use super::data::TOUCH_MPA;
+use super::maps::Frame;
 use super::{BearingRunningIn, Findings, figures, maps, run_in_figures};
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
@@ -33,6 +34,7 @@ struct RunningInFigures {
     share: Option<String>,
     depth: Option<String>,
     map: Option<String>,
+    journal_map: Option<String>,
     profile: Option<String>,
     stribeck: Option<String>,
 }
@@ -46,7 +48,8 @@ impl RunningInFigures {
             loss: Some(run_in_figures::loss(b, &format!("running-in-loss-{k}"))),
             share: Some(run_in_figures::share(b, &format!("running-in-share-{k}"))),
             depth: Some(run_in_figures::depth(b, &format!("running-in-depth-{k}"))),
-            map: maps::wear_map(b, &format!("wear-{k}")),
+            map: maps::wear_map(b, Frame::Shell, &format!("wear-{k}")),
+            journal_map: maps::wear_map(b, Frame::Journal, &format!("journal-wear-{k}")),
             profile: b.profile.as_ref().map(|p| run_in_figures::profile(p, &format!("profile-{k}"))),
             stribeck: run_in_figures::stribeck(&b.stribeck, &format!("stribeck-{k}")),
         }

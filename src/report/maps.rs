@@ -12,7 +12,7 @@ const SIGNED: [[f64; 3]; 3] = [[0.0, 90.0, 160.0], [247.0, 247.0, 247.0], [190.0
 
 /// Which surface a map unwraps.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Frame {
+pub enum Frame {
     Shell,
     Journal,
 }
@@ -98,13 +98,17 @@ fn map(c: &Curves, field: &[Vec<f64>], scale: Scale, frame: Frame, label: &str, 
     unwrapped(c.width_mm, cut, field, scale, frame, (label, name))
 }
 
-/// Depth worn off a shell, cut where it does not wear.
-pub fn wear_map(b: &BearingRunningIn, name: &str) -> Option<String> {
-    let top = b.wear_depth_um.iter().flatten().copied().fold(0.0f64, f64::max);
+/// Depth worn off a shell or a journal, cut where it does not wear.
+pub fn wear_map(b: &BearingRunningIn, frame: Frame, name: &str) -> Option<String> {
+    let depth_um = match frame {
+        Frame::Shell => &b.wear_depth_um,
+        Frame::Journal => &b.journal_wear_depth_um,
+    };
+    let top = depth_um.iter().flatten().copied().fold(0.0f64, f64::max);
     let words = ("wear depth [µm]", name);
     (top > 0.0).then(|| {
-        let (field, scale) = (&b.wear_depth_um, Scale::upwards(top));
-        unwrapped(b.width_mm, cut(field), field, scale, Frame::Shell, words)
+        let (field, scale) = (depth_um, Scale::upwards(top));
+        unwrapped(b.width_mm, cut(field), field, scale, frame, words)
     })
 }
 

@@ -17,7 +17,7 @@ pub struct RunningInReport {
     pub gradient: Option<RunningInGradientReport>,
     /// The first leg of its search, with the approximation of the march, if there was one.
     pub approximation: Option<ApproximationReport>,
-    /// Limits on wear, if the design is one for running-in.
+    /// Limits on wear and on the cycle in the end, if the design is one for running-in.
     pub limits: Vec<WearLimitReport>,
     /// One entry per bearing.
     pub bearings: Vec<BearingRunningIn>,
@@ -78,15 +78,17 @@ pub struct RunningInGradientReport {
     pub apart: f64,
 }
 
-/// A limit on wear.
+/// A limit on wear, or on the cycle of the last stage with the surfaces in the end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WearLimitReport {
-    /// "max-wear-depth" (a smooth maximum on the safe side) or "wear-volume".
+    /// "max-wear-depth" (a smooth maximum on the safe side), "wear-volume", "min-film-thickness-run-in", ...
     pub quantity: String,
     /// Bearing.
     pub bearing: String,
     /// Value the optimiser saw.
     pub value: f64,
+    /// "at least" or "at most".
+    pub sense: String,
     /// Limit.
     pub limit: f64,
     /// Unit of both.

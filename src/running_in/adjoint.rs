@@ -8,18 +8,18 @@
 //! before:         l + g1 + g2                               by the length:  e (P1 + P2)/2 + l (k1 + k2)/2 + g2 k1
 //! ```
 //!
-//! Each cycle is differentiated once by its adjoint, for two rows: the loss, and the rubbing of all cells with their weights as marks.
+//! Each cycle is differentiated once by its adjoint, for two rows: a quantity (the loss), and the rubbing of all cells with their weights as marks.
 //! Derivatives by the surfaces are those by the gap, which the adjoint has anyway.
 
 use super::field::{moved, product, zeros};
 use super::gradient::{Asked, RunningInGradient};
 use super::march::Block;
-use super::quantity::{BlockWorth, Worth, area_slope};
+use super::quantity::{BlockWorth, Worth, area_slope, mean_of};
 use super::rate::{Rate, worn};
 use super::stage::{MarchError, variable_count};
 use crate::cranktrain::{BearingOutput, JournalBearing, SurfaceField};
 use crate::gradient::{EngineName, engine};
-use crate::orbit::{Quantity, Reduction};
+use crate::orbit::Quantity;
 use crate::run::Cost;
 use std::sync::Arc;
 
@@ -51,9 +51,9 @@ impl Back<'_> {
     fn run(&mut self, worth: &Worth) -> Result<(), MarchError> {
         let Asked { march, stages, .. } = self.asked;
         let mut later = worth.worn.clone();
-        if worth.last_loss != 0.0 {
+        if let Some(on) = worth.last {
             let at = (stages.len() - 1, &march.course.worn_m);
-            let by = self.cycle(at, &march.course.last, worth.last_loss, &SurfaceField::default())?;
+            let by = self.cycle(at, &march.course.last, on, &SurfaceField::default())?;
             later = moved(&later, 1.0, &by);
         }
         for (k, block) in march.blocks.iter().enumerate().rev() {
@@ -72,10 +72,12 @@ impl Back<'_> {
         let (h, e) = (block.length_s, worth.energy);
         let [k1, k2] = [0, 1].map(|r| self.asked.options.depths(&block.rates[r]));
         let half = moved(&zeros(later), 0.5 * h, later);
-        let second = self.cycle((block.stage, &block.reached_m), &block.rates[1], 0.5 * e * h, &half)?;
+        let loss = |weight: f64| (mean_of(BearingOutput::Loss), weight);
+        let at = (block.stage, &block.reached_m);
+        let second = self.cycle(at, &block.rates[1], loss(0.5 * e * h), &half)?;
         let on_first = moved(&half, h, &second);
         let at = (block.stage, &block.worn_m);
-        let first = self.cycle(at, &block.rates[0], 0.5 * e * h + worth.first_loss, &on_first)?;
+        let first = self.cycle(at, &block.rates[0], loss(0.5 * e * h + worth.first_loss), &on_first)?;
         let losses = block.rates[0].loss_w() + block.rates[1].loss_w();
         let by_length = worth.duration
             + 0.5 * e * losses
@@ -88,12 +90,12 @@ impl Back<'_> {
         Ok(moved(&moved(later, 1.0, &first), 1.0, &second))
     }
 
-    /// Pulls weights on the loss and on the wear of a cycle back to the variables, which are added up, and to its surfaces.
+    /// Pulls weights on a quantity and on the wear of a cycle back to the variables, which are added up, and to its surfaces.
     fn cycle(
         &mut self,
         (stage, worn_m): (usize, &SurfaceField),
         rate: &Arc<Rate>,
-        on_loss: f64,
+        on: (Quantity, f64),
         on_depth: &SurfaceField,
     ) -> Result<SurfaceField, MarchError> {
         let Asked { stages, options, cancel, .. } = self.asked;
@@ -103,10 +105,9 @@ impl Back<'_> {
         let marks =
             SurfaceField { shell: times(shell, &on_depth.shell), journal: times(journal, &on_depth.journal) };
         let wears = marks.shell.iter().chain(&marks.journal).any(|m| *m != 0.0);
-        let mean = |o: BearingOutput| Quantity { output: o.index(), reduction: Reduction::Mean };
-        let wanted = [(on_loss != 0.0, BearingOutput::Loss, on_loss), (wears, BearingOutput::Rubbing, 1.0)];
+        let rubbing = (mean_of(BearingOutput::Rubbing), if wears { 1.0 } else { 0.0 });
         let (of, weights): (Vec<Quantity>, Vec<f64>) =
-            wanted.into_iter().filter(|(is, ..)| *is).map(|(_, o, w)| (mean(o), w)).unzip();
+            [on, rubbing].into_iter().filter(|(_, weight)| *weight != 0.0).unzip();
         let mut by = zeros(worn_m);
         if of.is_empty() {
             return Ok(by);

@@ -3,9 +3,10 @@
 use super::field::zeros;
 use super::march::{Course, March};
 use super::stage::Stage;
-use crate::cranktrain::{BearingParameter, JournalBearing, SurfaceField};
+use crate::cranktrain::{BearingOutput, BearingParameter, JournalBearing, SurfaceField};
 use crate::film::Mesh;
 use crate::math::PowerMean;
+use crate::orbit::{Quantity, Reduction};
 use std::f64::consts::PI;
 
 /// A fall of the loss by less than this share of it is none.
@@ -18,8 +19,8 @@ pub enum RunningInQuantity {
     EnergyLost,
     /// The same over its length, W: the friction loss that takes wear into account, `P_wear`.
     MeanLoss,
-    /// Mean friction loss of the cycle of the last stage with the surfaces in the end, W.
-    FinalLoss,
+    /// A quantity of the cycle of the last stage with the surfaces in the end; see [`RunningInQuantity::final_loss`].
+    Final(Quantity),
     /// Volume worn off both surfaces, m3.
     WearVolume,
     /// Smooth maximum (of the given sharpness) of the depth worn off shell and journal, m.
@@ -38,8 +39,8 @@ pub struct Worth {
     pub last_energy: f64,
     /// By the loss at the beginning of the last stage.
     pub first_loss: f64,
-    /// By the last loss.
-    pub last_loss: f64,
+    /// By a quantity of the last cycle.
+    pub last: Option<(Quantity, f64)>,
     /// By the length of the programme.
     pub duration: f64,
     /// By the length of the last stage.
@@ -116,14 +117,24 @@ pub fn falls(first_w: f64, last_w: f64) -> bool {
     first_w - last_w > LEAST_FALL * first_w
 }
 
+/// The mean of an output over a cycle.
+pub(super) fn mean_of(output: BearingOutput) -> Quantity {
+    Quantity { output: output.index(), reduction: Reduction::Mean }
+}
+
 impl RunningInQuantity {
+    /// Mean friction loss in the end, W.
+    pub fn final_loss() -> Self {
+        Self::Final(mean_of(BearingOutput::Loss))
+    }
+
     /// Its value.
     pub fn value(self, course: &Course, model: &JournalBearing) -> f64 {
         let (first, last) = course.losses();
         match self {
             Self::EnergyLost => course.energy_j,
             Self::MeanLoss => course.energy_j / course.duration_s,
-            Self::FinalLoss => last,
+            Self::Final(of) => course.last.orbit.value(&of),
             Self::WearVolume => worn_volume_m3(&course.worn_m, model),
             Self::MaxDepth(sharpness) => PowerMean::maximum(sharpness).of(depths(&course.worn_m)).value(),
             Self::TimeToRunIn if !falls(first, last) => 0.0,
@@ -145,7 +156,7 @@ impl RunningInQuantity {
                 worth.energy = 1.0 / t;
                 worth.duration = -course.energy_j / (t * t);
             }
-            Self::FinalLoss => worth.last_loss = 1.0,
+            Self::Final(of) => worth.last = Some((of, 1.0)),
             Self::WearVolume => {
                 worth.worn.shell.fill(cell_area_m2(model));
                 worth.worn.journal.fill(cell_area_m2(model));
@@ -162,7 +173,7 @@ impl RunningInQuantity {
                 let (fall, value) = (first - last, self.value(course, model));
                 let duration_s = course.last_duration_s;
                 worth.last_energy = 1.0 / fall;
-                worth.last_loss = (value - duration_s) / fall;
+                worth.last = Some((mean_of(BearingOutput::Loss), (value - duration_s) / fall));
                 worth.first_loss = -value / fall;
                 worth.last_duration = -last / fall;
             }

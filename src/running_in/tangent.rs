@@ -12,19 +12,20 @@
 
 use super::field::{moved, product, zeros};
 use super::gradient::{Asked, RunningInGradient};
-use super::quantity::{Worth, area_slope};
+use super::quantity::{Worth, area_slope, mean_of};
 use super::rate::{Rate, worn};
 use super::stage::{MarchError, variable_count};
 use crate::cranktrain::{BearingOutput, SurfaceField};
 use crate::dae::Dae;
 use crate::gradient::{Along, along};
-use crate::orbit::{Quantity, Reduction};
+use crate::orbit::Quantity;
 use crate::run::Cost;
 use std::sync::Arc;
 
 /// Tangents of one cycle by all variables.
 struct CycleTangent {
-    loss_w: Vec<f64>,
+    /// Of every quantity.
+    rows: Vec<Vec<f64>>,
     depths: Vec<SurfaceField>,
 }
 
@@ -37,32 +38,38 @@ pub(super) fn march_tangent(asked: Asked<'_>) -> Result<RunningInGradient, March
     let area = area_slope(last, n);
     let mut rows: Vec<Vec<f64>> = worths.iter().map(|w| area.iter().map(|a| w.area * a).collect()).collect();
     let mut surfaces = vec![zeros(&march.course.worn_m); n];
+    let loss = [mean_of(BearingOutput::Loss)];
     for (k, block) in march.blocks.iter().enumerate() {
         let h = block.length_s;
         let share = h / stages[block.stage].duration_s;
         let longer = |v: usize| if stages[block.stage].duration_variable == Some(v) { share } else { 0.0 };
         let [k1, k2] = [0, 1].map(|r| options.depths(&block.rates[r]));
         let [p1, p2] = [0, 1].map(|r| block.rates[r].loss_w());
-        let first = forward.cycle((block.stage, &block.worn_m), &block.rates[0], &surfaces)?;
+        let at = (block.stage, &block.worn_m);
+        let first = forward.cycle(at, &block.rates[0], &loss, &surfaces)?;
         let reached: Vec<SurfaceField> =
             (0..n).map(|v| moved(&moved(&surfaces[v], h, &first.depths[v]), longer(v), &k1)).collect();
-        let second = forward.cycle((block.stage, &block.reached_m), &block.rates[1], &reached)?;
+        let at = (block.stage, &block.reached_m);
+        let second = forward.cycle(at, &block.rates[1], &loss, &reached)?;
         for v in 0..n {
-            let energy = 0.5 * (h * (first.loss_w[v] + second.loss_w[v]) + longer(v) * (p1 + p2));
+            let energy = 0.5 * (h * (first.rows[0][v] + second.rows[0][v]) + longer(v) * (p1 + p2));
             for (row, worth) in rows.iter_mut().zip(&worths) {
                 let worth = worth.of_block(march, k, stages.len());
                 row[v] += worth.energy * energy + worth.duration * longer(v);
-                row[v] += worth.first_loss * first.loss_w[v];
+                row[v] += worth.first_loss * first.rows[0][v];
             }
             let s = moved(&moved(&surfaces[v], 0.5 * h, &first.depths[v]), 0.5 * h, &second.depths[v]);
             surfaces[v] = moved(&moved(&s, 0.5 * longer(v), &k1), 0.5 * longer(v), &k2);
         }
     }
-    if worths.iter().any(|w| w.last_loss != 0.0) {
+    let in_the_end = rows.iter_mut().zip(&worths).filter_map(|(row, w)| w.last.map(|last| (row, last)));
+    let (of, in_the_end): (Vec<Quantity>, Vec<_>) =
+        in_the_end.map(|(row, (quantity, weight))| (quantity, (row, weight))).unzip();
+    if !of.is_empty() {
         let at = (stages.len() - 1, &march.course.worn_m);
-        let end = forward.cycle(at, &march.course.last, &surfaces)?;
-        for (row, worth) in rows.iter_mut().zip(&worths) {
-            row.iter_mut().zip(&end.loss_w).for_each(|(g, p)| *g += worth.last_loss * p);
+        let end = forward.cycle(at, &march.course.last, &of, &surfaces)?;
+        for ((row, weight), slopes) in in_the_end.into_iter().zip(&end.rows) {
+            row.iter_mut().zip(slopes).for_each(|(g, p)| *g += weight * p);
         }
     }
     for (row, worth) in rows.iter_mut().zip(&worths) {
@@ -80,35 +87,35 @@ struct Forward<'a> {
 }
 
 impl Forward<'_> {
-    /// Loss and wear of a cycle along all variables, whose surfaces have the given tangents.
+    /// Quantities and wear of a cycle along all variables, whose surfaces have the given tangents.
     fn cycle(
         &mut self,
         (stage, worn_m): (usize, &SurfaceField),
         rate: &Arc<Rate>,
+        of: &[Quantity],
         surfaces: &[SurfaceField],
     ) -> Result<CycleTangent, MarchError> {
         let Asked { stages, options, cancel, .. } = self.asked;
         cancel.check().map_err(|_| MarchError::Cancelled)?;
-        let of = &stages[stage];
-        let at = (&of.model, worn_m);
+        let stage = &stages[stage];
+        let at = (&stage.model, worn_m);
         let rate = rate.complete(at, options, &mut self.near, cancel, &mut self.cost)?;
-        let model = worn(&of.model, worn_m, SurfaceField::default())?;
+        let model = worn(&stage.model, worn_m, SurfaceField::default())?;
         let direction = |v: usize| {
             let mut parameters = vec![0.0; model.parameters().len()];
-            for (p, variable) in parameters.iter_mut().zip(&of.variables) {
+            for (p, variable) in parameters.iter_mut().zip(&stage.variables) {
                 *p = if *variable == v { 1.0 } else { 0.0 };
             }
             Along { parameters, fields: model.wear_along(&surfaces[v]) }
         };
         let directions: Vec<Along> = (0..self.n).map(direction).collect();
-        let loss = [Quantity { output: BearingOutput::Loss.index(), reduction: Reduction::Mean }];
-        let found = along(&model, &rate.orbit, &options.orbit, &loss, &directions, cancel)?;
+        let found = along(&model, &rate.orbit, &options.orbit, of, &directions, cancel)?;
         self.cost += found.cost;
         let depths = |locals: &Vec<f64>| {
             let (shell, journal) = locals.split_at(locals.len() / 2);
             options.depths_of(&SurfaceField { shell: shell.to_vec(), journal: journal.to_vec() })
         };
         let depths = found.locals.iter().map(depths).collect();
-        Ok(CycleTangent { loss_w: found.rows.into_iter().next().unwrap_or_default(), depths })
+        Ok(CycleTangent { rows: found.rows, depths })
     }
 }

@@ -284,7 +284,6 @@ fn search(
     let comparison = comparison::comparison(file, all, faults);
     let pareto = pareto::pareto(file, named, faults);
     let linear = linear_constraints(file, parameters.as_deref().unwrap_or_default(), faults);
-    let running_in = running_in(file, named, film, faults);
     let robust = robust(file, named, film, parameters.as_deref().unwrap_or_default(), faults);
     let (gradient, optimiser) = match file.comparison.is_absent() {
         true => (sections::gradient(file, faults), sections::optimiser(file, faults)),
@@ -298,6 +297,8 @@ fn search(
             (perturbation.map(|eps| (EngineName::Adj, eps)), comparison::sharpness(file, faults))
         }
     };
+    let sharpness = optimiser.as_ref().map_or(sections::SHARPNESS, |(_, sharpness)| *sharpness);
+    let running_in = running_in(file, named, film, sharpness, faults);
     let ((engine, perturbation), (optimiser, sharpness)) = (gradient?, optimiser?);
     Some(Search {
         points: points?,

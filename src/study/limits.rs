@@ -4,7 +4,7 @@ use super::build::Plan;
 use super::check::Study;
 use super::robust;
 use super::vocabulary::QuantityName;
-use crate::optimise::{Evaluated, Minimum, Outcome, Sense};
+use crate::optimise::{Evaluated, Minimum, Outcome, Sense, relative_excess};
 use crate::report::{ConstraintReport, Curves, LinearReport};
 use crate::units::tidy;
 
@@ -66,10 +66,7 @@ pub(super) fn constraints(
         let orbit = &at.orbits[label.case];
         let multiplier = minimum.multipliers.inequalities.get(k).copied().unwrap_or(0.0);
         let value = orbit.value(&smooth);
-        let excess = match c.sense {
-            Sense::AtLeast => 1.0 - value / c.limit,
-            Sense::AtMost => value / c.limit - 1.0,
-        };
+        let (excess, _) = relative_excess(c.sense, c.limit, value);
         let margin = margins.as_ref().map(|m| m.inequalities[k]);
         let excess = excess + margin.unwrap_or(0.0);
         let active = excess > -ACTIVE_GAP && multiplier > ACTIVE * objective;

@@ -63,7 +63,7 @@ fn gradient(study: &Study, found: &Searched) -> Option<RunningInGradientReport> 
 /// What a running-in design minimised.
 fn minimised(wanted: &RunningInPlan, found: &Searched) -> Option<MinimisedReport> {
     let (quantity, scale, unit) = match wanted.minimise? {
-        RunningInQuantity::FinalLoss => ("friction loss in the end, all bearings", 1.0, "W"),
+        RunningInQuantity::Final(_) => ("friction loss in the end, all bearings", 1.0, "W"),
         RunningInQuantity::EnergyLost => {
             ("energy lost over the programme, all bearings", 1e-3 * wanted.objective_scale(), "kJ")
         }
@@ -84,22 +84,23 @@ fn limits(study: &Study, wanted: &RunningInPlan, found: &Searched) -> Vec<WearLi
     };
     let tolerance = study.optimiser.options.settings.tolerance.max(MET);
     let mut rows = Vec::new();
-    for bearing in &study.bearings {
-        for limit in &wanted.limits {
+    for (b, bearing) in study.bearings.iter().enumerate() {
+        for of in wanted.limits_of(b) {
             let k = found.plan.limits.len() + rows.len();
-            let (limit, scale, unit, name) = (limit.limit, limit.scale, limit.unit, limit.name);
+            let (words, (_, slope)) = (of.words, of.constraint(0.0));
             let Some(excess) = values.inequalities.get(k) else { continue };
             let multiplier = found.minimum.multipliers.inequalities.get(k).copied().unwrap_or(0.0);
             let active = *excess > -ACTIVE_GAP && multiplier > ACTIVE * values.objective.abs();
             rows.push(WearLimitReport {
-                quantity: name.to_owned(),
+                quantity: words.name(),
                 bearing: bearing.name.clone(),
-                value: (1.0 + excess) * limit * scale,
-                limit: tidy(limit * scale),
-                unit: unit.to_owned(),
+                value: words.shown(of.limit + excess / slope),
+                sense: super::limits::words(of.sense).to_owned(),
+                limit: tidy(words.shown(of.limit)),
+                unit: words.unit().to_owned(),
                 active,
                 met: *excess <= tolerance,
-                price_w_per_unit: if active { multiplier / (limit * scale) } else { 0.0 },
+                price_w_per_unit: if active { multiplier * slope.abs() / words.per_si() } else { 0.0 },
             });
         }
     }

@@ -2,14 +2,17 @@
 
 use super::Given;
 use super::bearings::Bearings;
+use super::constraints::constraint;
 use super::faults::{Faults, join};
 use super::file::{
     AccelerationName, FilmModelName, ParameterFile, RunningInFile, RunningInGoalName, StageFile, StudyFile,
 };
 use super::lexicon::{FASTEST_RAD_S, LARGEST_FACTOR, LONGEST_S};
-use super::plans::{FilmPlan, OperatingPoint};
+use super::plans::{ConstraintPlan, FilmPlan, OperatingPoint};
 use super::sections::worst_case;
+use super::vocabulary::QuantityName;
 use crate::cranktrain::Smoothing;
+use crate::optimise::{Sense, relative_excess};
 use crate::running_in::{RunningInQuantity, Settled};
 
 const PATH: &str = "running_in";
@@ -37,7 +40,7 @@ pub(super) struct RunningInPlan {
     pub minimise: Option<RunningInQuantity>,
     /// Whether its search begins with the cheap approximation of the march.
     pub approximate_first: bool,
-    /// Limits of a running-in design, for every bearing.
+    /// Limits of a running-in design.
     pub limits: Vec<WearLimit>,
 }
 
@@ -45,13 +48,64 @@ pub(super) struct RunningInPlan {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct WearLimit {
     pub quantity: RunningInQuantity,
-    /// Name in reports.
-    pub name: &'static str,
+    /// Bearing; `None` for all.
+    pub bearing: Option<usize>,
+    /// Allowed side.
+    pub sense: Sense,
     /// SI.
     pub limit: f64,
-    /// Unit of reports and how many of them one SI unit is.
-    pub unit: &'static str,
-    pub scale: f64,
+    /// How reports speak of it.
+    pub words: LimitWords,
+}
+
+/// How reports speak of a limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum LimitWords {
+    /// Of the march: name, unit, and how many of them one SI unit is.
+    March(&'static str, &'static str, f64),
+    /// Of the cycle in the end.
+    InTheEnd(QuantityName),
+}
+
+impl LimitWords {
+    /// Name in reports.
+    pub fn name(self) -> String {
+        match self {
+            Self::March(name, ..) => name.to_owned(),
+            Self::InTheEnd(quantity) => format!("{}-run-in", quantity.key()),
+        }
+    }
+
+    /// Unit in reports.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::March(_, unit, _) => unit,
+            Self::InTheEnd(quantity) => quantity.unit().0,
+        }
+    }
+
+    /// How many of them one SI unit is.
+    pub fn per_si(self) -> f64 {
+        match self {
+            Self::March(.., per_si) => per_si,
+            Self::InTheEnd(quantity) => 1.0 / quantity.unit().1,
+        }
+    }
+
+    /// A value in that unit.
+    pub fn shown(self, si: f64) -> f64 {
+        match self {
+            Self::March(.., per_si) => per_si * si,
+            Self::InTheEnd(quantity) => quantity.shown(si),
+        }
+    }
+}
+
+impl WearLimit {
+    /// The constraint `c <= 0` at a value, and its derivative by it.
+    pub fn constraint(&self, value: f64) -> (f64, f64) {
+        relative_excess(self.sense, self.limit, value)
+    }
 }
 
 /// A checked stage.
@@ -68,6 +122,7 @@ pub(super) fn running_in(
     file: &mut StudyFile,
     bearings: &Bearings,
     film: Option<&FilmPlan>,
+    sharpness: f64,
     faults: &mut Faults,
 ) -> Option<RunningInPlan> {
     faults.get(&file.running_in, PATH);
@@ -86,21 +141,24 @@ pub(super) fn running_in(
     }
     let mut plan = march_plan(r, faults);
     plan.limits = limits(r, faults);
+    plan.limits.extend(in_the_end(r, bearings, sharpness, faults));
     let at = |key: &str| join(PATH, key);
     let goal = faults.get(&r.minimise, &at("minimise"));
     plan.minimise = goal.map(|goal| match goal {
         RunningInGoalName::MeanLoss => RunningInQuantity::MeanLoss,
         RunningInGoalName::EnergyLost => RunningInQuantity::EnergyLost,
-        RunningInGoalName::FinalLoss => RunningInQuantity::FinalLoss,
+        RunningInGoalName::FinalLoss => RunningInQuantity::final_loss(),
     });
     if r.minimise.is_absent() {
         let why = "only a running-in design is searched within limits on wear; give running_in.minimise";
+        let why_limits = "only a running-in design is searched within limits on the surfaces in the end; give running_in.minimise";
         let why_first = "only the search of a running-in design can begin so; give running_in.minimise";
         faults.unused(&r.max_wear_depth, &at("max_wear_depth"), why);
         faults.unused(&r.max_wear_volume, &at("max_wear_volume"), why);
         faults.unused(&r.max_energy_lost, &at("max_energy_lost"), why);
         faults.unused(&r.max_final_loss, &at("max_final_loss"), why);
         faults.unused(&r.max_time_to_run_in, &at("max_time_to_run_in"), why);
+        faults.unused(&r.constraints, &at("constraints"), why_limits);
         faults.unused(&r.approximate_first, &at("approximate_first"), why_first);
     } else {
         plan.approximate_first = faults.or(&mut r.approximate_first, &at("approximate_first"), false);
@@ -131,6 +189,11 @@ pub(super) fn running_in(
 }
 
 impl RunningInPlan {
+    /// Limits of a bearing.
+    pub fn limits_of(&self, bearing: usize) -> impl Iterator<Item = &WearLimit> + Clone {
+        self.limits.iter().filter(move |l| l.bearing.is_none_or(|only| only == bearing))
+    }
+
     /// What makes watts of the minimised quantity: for an energy the length of the programme as written, s.
     pub fn objective_scale(&self) -> f64 {
         match self.minimise {
@@ -224,13 +287,35 @@ fn limits(r: &RunningInFile, faults: &mut Faults) -> Vec<WearLimit> {
         ("max_wear_depth", depth, "max-wear-depth", RunningInQuantity::MaxDepth(SHARPNESS), "um", 1e6),
         ("max_wear_volume", volume, "wear-volume", RunningInQuantity::WearVolume, "mm3", 1e9),
         ("max_energy_lost", energy, "energy-lost", RunningInQuantity::EnergyLost, "kJ", 1e-3),
-        ("max_final_loss", loss, "final-loss", RunningInQuantity::FinalLoss, "W", 1.0),
+        ("max_final_loss", loss, "final-loss", RunningInQuantity::final_loss(), "W", 1.0),
         ("max_time_to_run_in", time, "time-to-run-in", RunningInQuantity::TimeToRunIn, "h", 1.0 / HOUR_S),
     ];
     let mut found = Vec::new();
-    for (key, limit, name, quantity, unit, scale) in all {
+    for (key, limit, name, quantity, unit, per_si) in all {
         faults.range(limit, &at(key), |v| v > 0.0, "above zero");
-        found.extend(limit.map(|limit| WearLimit { quantity, name, limit, unit, scale }));
+        let words = LimitWords::March(name, unit, per_si);
+        let (bearing, sense) = (None, Sense::AtMost);
+        found.extend(limit.map(|limit| WearLimit { quantity, bearing, sense, limit, words }));
+    }
+    found
+}
+
+/// Limits on the cycle of the last stage with the surfaces in the end.
+fn in_the_end(
+    r: &mut RunningInFile,
+    bearings: &Bearings,
+    sharpness: f64,
+    faults: &mut Faults,
+) -> Vec<WearLimit> {
+    let list = faults.get(&r.constraints, &join(PATH, "constraints")).unwrap_or_default();
+    let mut found = Vec::new();
+    for (i, given) in list.iter().enumerate() {
+        let path = format!("{}[{i}]", join(PATH, "constraints"));
+        let given = faults.get(given, &path);
+        let Some(plan) = given.and_then(|c| constraint(&c, &path, bearings, faults)) else { continue };
+        let quantity = RunningInQuantity::Final(plan.quantity.of_cycle(sharpness).0);
+        let ConstraintPlan { bearing, sense, limit, quantity: name } = plan;
+        found.push(WearLimit { quantity, bearing, sense, limit, words: LimitWords::InTheEnd(name) });
     }
     found
 }

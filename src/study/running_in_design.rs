@@ -1,8 +1,8 @@
 //! The running-in design: least loss while the bearings wear, within limits on what they wear.
 //!
 //! ```text
-//! minimise  sum_bearings count * P_wear(x)  (or energy, or the loss in the end)    subject to the limits of the study with new
-//!           surfaces, and those of the running-in of every bearing
+//! minimise    sum_bearings count * P_wear(x)      or energy, or the loss in the end
+//! subject to  the limits of the study with new surfaces, and of every bearing those on what is worn and on the cycle in the end
 //! ```
 //!
 //! The blocks of each march are those that its error control chose at the start design, so that values and gradients belong to one
@@ -110,10 +110,16 @@ fn open<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The minimised quantity and the limited ones, in this order.
-fn quantities(wanted: &RunningInPlan) -> Vec<RunningInQuantity> {
+/// The minimised quantity and the limited ones of a bearing, in this order.
+fn quantities(wanted: &RunningInPlan, bearing: usize) -> Vec<RunningInQuantity> {
     let minimised = wanted.minimise.unwrap_or(RunningInQuantity::MeanLoss);
-    std::iter::once(minimised).chain(wanted.limits.iter().map(|l| l.quantity)).collect()
+    std::iter::once(minimised).chain(wanted.limits_of(bearing).map(|l| l.quantity)).collect()
+}
+
+/// Values of the minimised quantity and the limited ones of a bearing.
+fn values(wanted: &RunningInPlan, bearing: usize, stages: &[Stage], found: &March) -> Vec<f64> {
+    let Some(Stage { model, .. }) = stages.last() else { return Vec::new() };
+    quantities(wanted, bearing).iter().map(|q| q.value(&found.course, model)).collect()
 }
 
 /// Step of the difference that proves a gradient, as a share of the box.
@@ -171,13 +177,12 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
     /// blocks there.
     pub fn apart(&self, x: &[f64], other: &Self) -> Result<f64, EvaluationError> {
         let (frozen, anew) = (self.worth(x)?, open(&other.memory).chosen_at.clone());
-        let scales = std::iter::once(0.0).chain(self.wanted.limits.iter().map(|l| l.limit));
-        let scales: Vec<f64> = scales.collect();
-        let of = |(a, b): (&Vec<f64>, &Vec<f64>)| {
-            let each = a.iter().zip(b).zip(&scales).map(|((a, b), s)| (a - b).abs() / a.abs().max(*s));
+        let of = |(bearing, (a, b)): (usize, (&Vec<f64>, &Vec<f64>))| {
+            let scales = std::iter::once(0.0).chain(self.wanted.limits_of(bearing).map(|l| l.limit));
+            let each = a.iter().zip(b).zip(scales).map(|((a, b), s)| (a - b).abs() / a.abs().max(s));
             each.fold(0.0, f64::max)
         };
-        Ok(frozen.iter().zip(&anew).map(of).fold(0.0, f64::max))
+        Ok(frozen.iter().zip(&anew).enumerate().map(of).fold(0.0, f64::max))
     }
 
     /// Blocks of the march, and of them the groups of its approximation.
@@ -229,12 +234,8 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
         if let Some(known) = self.known(x) {
             return Ok(known.values);
         }
-        let of = quantities(self.wanted);
-        let one = |m: &Marched| -> Vec<f64> {
-            let Some(Stage { model, .. }) = m.stages.last() else { return Vec::new() };
-            of.iter().map(|q| q.value(&m.found.course, model)).collect()
-        };
-        let values: Vec<Vec<f64>> = self.marched(x)?.iter().map(one).collect();
+        let one = |(bearing, m): (usize, &Marched)| values(self.wanted, bearing, &m.stages, &m.found);
+        let values: Vec<Vec<f64>> = self.marched(x)?.iter().enumerate().map(one).collect();
         open(&self.memory).found.push(Found { x: x.to_vec(), values: values.clone(), rows: None });
         Ok(values)
     }
@@ -249,9 +250,9 @@ impl<'p, 'r> RunningInProblem<'p, 'r> {
         let steps: Vec<f64> =
             lower.iter().zip(&upper).map(|(l, u)| self.study.perturbation * (u - l)).collect();
         let engine = MarchEngine { name: self.plan.problem.engine_name(), steps: &steps };
-        let of = quantities(self.wanted);
         let mut all = Vec::new();
-        for (Marched { stages, found }, options) in self.marched(x)?.iter().zip(&self.options) {
+        for (bearing, Marched { stages, found }) in self.marched(x)?.iter().enumerate() {
+            let (options, of) = (&self.options[bearing], quantities(self.wanted, bearing));
             let table = march_gradient(engine, stages, found, options, &of, self.context.cancel);
             let mut table = table.map_err(refused)?;
             open(&self.memory).work.gradients += table.cost;
@@ -315,10 +316,7 @@ fn first_march(
         let found = march(&stages, options, context.cancel, &mut |_| {}).map_err(refused)?;
         memory.blocks.push(found.shares(&stages));
         memory.groups.push(approximation(&found, &stages, options));
-        if let Some(Stage { model, .. }) = stages.last() {
-            let of = quantities(wanted);
-            memory.chosen_at.push(of.iter().map(|q| q.value(&found.course, model)).collect());
-        }
+        memory.chosen_at.push(values(wanted, bearing, &stages, &found));
         memory.work.marches += found.course.cost;
     }
     Ok(memory)
@@ -332,9 +330,9 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
     fn values(&self, x: &[f64]) -> Result<Values, EvaluationError> {
         let mut values = self.plan.problem.values(x)?;
         values.objective = self.objective(x)?;
-        for own in self.worth(x)? {
-            let beyond = own[1..].iter().zip(&self.wanted.limits).map(|(v, l)| v / l.limit - 1.0);
-            values.inequalities.extend(beyond);
+        for (bearing, own) in self.worth(x)?.iter().enumerate() {
+            let limited = own[1..].iter().zip(self.wanted.limits_of(bearing));
+            values.inequalities.extend(limited.map(|(v, l)| l.constraint(*v).0));
         }
         Ok(values)
     }
@@ -342,13 +340,14 @@ impl ConstrainedProblem for RunningInProblem<'_, '_> {
     fn slopes(&self, x: &[f64]) -> Result<Slopes, EvaluationError> {
         let mut slopes = self.plan.problem.slopes(x)?;
         slopes.objective.fill(0.0);
-        for (rows, count) in self.gradients(x)?.into_iter().zip(self.counts()) {
+        for (bearing, (rows, count)) in self.gradients(x)?.into_iter().zip(self.counts()).enumerate() {
             let mut rows = rows.into_iter();
             let objective = rows.next().unwrap_or_default();
             let by = count / self.wanted.objective_scale();
             slopes.objective.iter_mut().zip(&objective).for_each(|(sum, g)| *sum += by * g);
-            for (mut row, limit) in rows.zip(&self.wanted.limits) {
-                row.iter_mut().for_each(|g| *g /= limit.limit);
+            for (mut row, limit) in rows.zip(self.wanted.limits_of(bearing)) {
+                let (_, by) = limit.constraint(0.0);
+                row.iter_mut().for_each(|g| *g *= by);
                 slopes.inequalities.push(row);
             }
         }

@@ -187,7 +187,7 @@ section! {
     RunningInFile {
         /// The programme.
         stages: Vec<Given<StageFile>>,
-        /// Searches a running-in design: "mean-loss" (over the programme), "energy-lost" or "final-loss" is minimised instead of the loss of new surfaces at the operating points, where the limits hold all the same. Default: the design is searched without regard to wear and run in afterwards.
+        /// Searches a running-in design: "mean-loss" (over the programme), "energy-lost" or "final-loss" is minimised instead of the loss of new surfaces at the operating points, where the limits of [[constraints]] hold all the same. Default: the design is searched without regard to wear and run in afterwards.
         minimise: RunningInGoalName,
         /// Largest wear depth of any shell or journal. For a running-in design.
         max_wear_depth: Length,
@@ -199,6 +199,8 @@ section! {
         max_final_loss: Power,
         /// Longest time constant of any bearing's loss in the last stage. For a running-in design.
         max_time_to_run_in: Duration,
+        /// Limits on the cycle of the last stage with the surfaces in the end, in the form of [[constraints]], which hold with new surfaces. For a running-in design.
+        constraints: Vec<Given<ConstraintFile>>,
         /// Whether the search of a running-in design begins with a cheap approximation of the march (P_alpha), where that has at most half of its blocks. Default false.
         approximate_first: bool,
         /// Share of the shell's roughness that is left where much was worn off. Default 1: the roughness stays.
