@@ -57,6 +57,11 @@ pub enum Event {
         /// Objective in watts, if the simulation succeeded.
         objective_w: Option<f64>,
     },
+    /// How safe the design is that is accepted next.
+    Film {
+        /// Smallest film thickness of all bearings and operating points, um.
+        min_thickness_um: f64,
+    },
     /// The optimiser accepted a design.
     Iteration(IterationEvent),
 }

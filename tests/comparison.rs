@@ -3,7 +3,7 @@
 use crate::common::{here, merged, quietly};
 use stribeck::gradient::{EngineName, Finding};
 use stribeck::report::{
-    Comparison, ComparisonStatus, Timing, comparison_csv, comparison_html, write_comparison,
+    Comparison, ComparisonStatus, Timing, comparison_csv, comparison_files, comparison_html, write_folder,
 };
 use stribeck::study::{Format, Study, compare, schema};
 
@@ -92,7 +92,7 @@ fn its_folder_is_complete_and_its_page_self_contained() {
         assert!(page.contains(words), "{words}");
     }
     let folder = tempfile::tempdir().unwrap();
-    write_comparison(&found, folder.path()).unwrap();
+    write_folder(&comparison_files(&found).unwrap(), folder.path()).unwrap();
     let lines = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap().lines().count();
     assert_eq!(lines("gradients.csv"), 1 + 4 * 16 * (2 + 3 * 2));
     assert_eq!(lines("errors.csv"), 1 + 4 * (1 + 3 * 2));

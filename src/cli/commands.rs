@@ -6,9 +6,9 @@ use super::{
     RunArguments, SchemaArguments, exit_code, faults, proof_tables, tables,
 };
 use crate::optimise::EvaluationError;
-use crate::report::{self, Characteristic, CharacteristicStatus, Comparison, ComparisonStatus};
+use crate::report::{self, Comparison, ComparisonStatus};
 use crate::run::{Cancel, FolderStore, RunContext};
-use crate::study::{Format, Study, StudyErrors, Sweep, compare, compare_engines, prove};
+use crate::study::{Answer, Format, Study, StudyErrors, Sweep, Task, answer, compare_engines, prove};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -85,31 +85,52 @@ pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
     std::fs::create_dir_all(&folder).map_err(|e| Stop::File(folder.clone(), e))?;
     let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(study.optimiser.options.settings.max_iterations));
     let context = RunContext { cancel: &cancel, progress: &bars };
-    if let Some(found) = crate::study::characterise(&study, context) {
-        bars.finish();
-        return tabulated(&found, &folder, a.json);
-    }
-    if let Some(found) = compare(&study, context) {
-        bars.finish();
-        return compared(&found, &folder, a.json);
-    }
     let store = FolderStore(folder.clone());
     if a.fresh {
         store.clear();
     }
-    let findings = crate::study::run_saved(&study, context, &store);
+    let task = if a.simulate { Task::Simulation } else { Task::Answer };
+    let found = answer(&study, task, context, &store).map_err(Stop::Simulation)?;
     bars.finish();
-    report::write_folder(&findings, &folder).map_err(|e| Stop::File(folder.clone(), e))?;
-    if findings.report.outcome.status != crate::optimise::Outcome::Cancelled {
+    let files = found.files().map_err(|e| Stop::File(folder.clone(), e))?;
+    report::write_folder(&files, &folder).map_err(|e| Stop::File(folder.clone(), e))?;
+    if !found.is_cancelled() {
         store.clear();
     }
     if a.json {
-        put(&(serde_json::to_string_pretty(&findings.report).unwrap_or_default() + "\n"));
+        put(files.iter().find(|f| f.name == "report.json").map_or("", |f| &f.text));
     } else {
-        put(&tables::summary(&findings.report, std::io::stdout().is_terminal()));
+        put(&told(&found));
         put(&format!("report: {}\n", folder.join("report.html").display()));
     }
-    Ok(exit_code(findings.report.outcome.status))
+    Ok(code(&found))
+}
+
+/// An answer as tables.
+fn told(found: &Answer) -> String {
+    match found {
+        Answer::Design(found) => tables::summary(&found.report, std::io::stdout().is_terminal()),
+        Answer::Characteristic(found) => tables::characteristic(found),
+        Answer::Comparison(found) => proof_tables::comparison(found),
+        Answer::Gradient(found) => tables::engines(found),
+    }
+}
+
+/// The exit code of an answer.
+fn code(found: &Answer) -> u8 {
+    match found {
+        Answer::Design(found) => exit_code(found.report.outcome.status),
+        Answer::Comparison(found) if found.any_wrong() && !is_cancelled(found) => EXIT_WRONG_GRADIENT,
+        _ => match found.status().as_str() {
+            "cancelled" => exit_code(crate::optimise::Outcome::Cancelled),
+            "incomplete" => EXIT_INCOMPLETE,
+            _ => 0,
+        },
+    }
+}
+
+fn is_cancelled(found: &Comparison) -> bool {
+    found.status == ComparisonStatus::Cancelled
 }
 
 /// The study, from the design of an earlier report if there is one.
@@ -124,39 +145,6 @@ fn started(study: Study, report: Option<&Path>) -> Result<Study, Stop> {
     let (study, count) = study.started_from(&found).map_err(unreadable)?;
     eprintln!("starting from {count} parameter values of {}", path.display());
     Ok(study)
-}
-
-/// Writes and prints a characteristic.
-fn tabulated(found: &Characteristic, folder: &Path, json: bool) -> Result<u8, Stop> {
-    report::write_characteristic(found, folder).map_err(|e| Stop::File(folder.to_owned(), e))?;
-    if json {
-        put(&(serde_json::to_string_pretty(found).unwrap_or_default() + "\n"));
-    } else {
-        put(&tables::characteristic(found));
-        put(&format!("report: {}\n", folder.join("report.html").display()));
-    }
-    Ok(match found.status {
-        CharacteristicStatus::Complete => 0,
-        CharacteristicStatus::Incomplete => EXIT_INCOMPLETE,
-        CharacteristicStatus::Cancelled => exit_code(crate::optimise::Outcome::Cancelled),
-    })
-}
-
-/// Writes and prints a comparison.
-fn compared(found: &Comparison, folder: &Path, json: bool) -> Result<u8, Stop> {
-    report::write_comparison(found, folder).map_err(|e| Stop::File(folder.to_owned(), e))?;
-    if json {
-        put(&(serde_json::to_string_pretty(found).unwrap_or_default() + "\n"));
-    } else {
-        put(&proof_tables::comparison(found));
-        put(&format!("report: {}\n", folder.join("report.html").display()));
-    }
-    Ok(match found.status {
-        ComparisonStatus::Cancelled => exit_code(crate::optimise::Outcome::Cancelled),
-        _ if found.any_wrong() => EXIT_WRONG_GRADIENT,
-        ComparisonStatus::Complete => 0,
-        ComparisonStatus::Incomplete => EXIT_INCOMPLETE,
-    })
 }
 
 pub(super) fn check(a: &CheckArguments) -> Result<u8, Stop> {

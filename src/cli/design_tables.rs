@@ -137,7 +137,13 @@ fn running_in(report: &Report) -> Option<String> {
             .saving_percent
             .map_or_else(|| ", which breaks its limits".to_owned(), |p| format!(", {} % saved", short(p)));
         let (what, unit) = (&m.quantity, &m.unit);
-        words += &format!("\n{what}: {start} {unit} at the start, {optimum} {unit} at the design{saving}");
+        let measure = match m.start_violation {
+            Some(v) if v > 1e-6 => format!(" (which breaks its limits by {} %)", short(100.0 * v)),
+            _ => String::new(),
+        };
+        words += &format!(
+            "\n{what}: {start} {unit} at the start{measure}, {optimum} {unit} at the design{saving}"
+        );
     }
     if let Some(a) = &r.approximation {
         let design =
@@ -154,7 +160,10 @@ fn running_in(report: &Report) -> Option<String> {
     for l in &r.limits {
         let state = match (l.met, l.active) {
             (false, _) => ", violated".to_owned(),
-            (true, true) => format!(", active, price {} W per {}", short(l.price_w_per_unit), l.unit),
+            (true, true) if l.price_w_per_unit > 0.0 => {
+                format!(", active, price {} W per {}", short(l.price_w_per_unit), l.unit)
+            }
+            (true, true) => ", active".to_owned(),
             (true, false) => String::new(),
         };
         let (value, limit) = (short(l.value), short(l.limit));

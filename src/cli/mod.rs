@@ -27,10 +27,10 @@ pub const EXIT_INCOMPLETE: u8 = 8;
 /// Exit code for a gradient that is wrong.
 pub const EXIT_WRONG_GRADIENT: u8 = 9;
 
-/// Exit code of an outcome: 0 only for a converged design.
+/// Exit code of an outcome: 0 only for a converged design, and for a simulation that was asked for.
 pub fn exit_code(outcome: Outcome) -> u8 {
     match outcome {
-        Outcome::Converged => 0,
+        Outcome::Converged | Outcome::Simulated => 0,
         Outcome::AlmostConverged => 3,
         Outcome::IterationLimit => 4,
         Outcome::NoProgress => 5,
@@ -82,6 +82,9 @@ struct RunArguments {
     /// Start over, even if an earlier run of this study was stopped in the same folder; without it, a run goes on from there.
     #[arg(long)]
     fresh: bool,
+    /// Simulate the start design only, and run it in if the study says how.
+    #[arg(long, conflicts_with_all = ["start_from", "fresh"])]
+    simulate: bool,
     /// Print the report as JSON instead of a table.
     #[arg(long)]
     json: bool,

@@ -17,6 +17,7 @@ pub(super) struct Bars {
 struct News {
     stage: String,
     simulations: u64,
+    film_um: Option<f64>,
     search: String,
 }
 
@@ -42,6 +43,7 @@ impl Progress for Bars {
         match event {
             Event::Stage { name } => news.stage.clone_from(name),
             Event::Simulated { simulations, .. } => news.simulations = *simulations,
+            Event::Film { min_thickness_um } => news.film_um = Some(*min_thickness_um),
             Event::Iteration(i) => {
                 news.search = format!(
                     ", iteration {} of at most {}: {} W, violation {:.1e}, KKT {:.1e}",
@@ -57,6 +59,7 @@ impl Progress for Bars {
             0 => String::new(),
             n => format!(", {n} cycles simulated"),
         };
-        self.bar.set_message(format!("{}{simulated}{}", news.stage, news.search));
+        let film = news.film_um.map_or_else(String::new, |um| format!(", film {} um", short(um)));
+        self.bar.set_message(format!("{}{simulated}{}{film}", news.stage, news.search));
     }
 }

@@ -42,10 +42,14 @@ pub struct DesignProblem<'r, M: SensitiveDae> {
     memory: Mutex<Memory>,
     /// Called with a snapshot at accepted designs.
     save: Option<Save<'r>>,
+    /// What is told of the cycles of accepted designs.
+    watch: Option<Watch>,
 }
 
 /// Takes a snapshot.
 type Save<'r> = Box<dyn Fn(&[u8]) + Send + Sync + 'r>;
+/// Makes an event of the cycles of a design.
+type Watch = Box<dyn Fn(&Evaluated) -> Event + Send + Sync>;
 
 impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
     /// A problem of cases and limits over a box of design variables, differentiated by `engine`.
@@ -58,7 +62,7 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
     ) -> Self {
         let (lower, upper) = bounds;
         let (linear, beside, memory) = (Vec::new(), Vec::new(), Mutex::default());
-        Self { cases, limits, linear, lower, upper, beside, engine, run, memory, save: None }
+        Self { cases, limits, linear, lower, upper, beside, engine, run, memory, save: None, watch: None }
     }
 
     /// Adds constraints that are linear in the design variables.
@@ -71,6 +75,12 @@ impl<'r, M: SensitiveDae> DesignProblem<'r, M> {
     #[must_use]
     pub fn beside(self, values: Vec<f64>) -> Self {
         Self { beside: values, ..self }
+    }
+
+    /// Lets an event tell of the cycles of every accepted design.
+    #[must_use]
+    pub fn watched(self, watch: impl Fn(&Evaluated) -> Event + Send + Sync + 'static) -> Self {
+        Self { watch: Some(Box::new(watch)), ..self }
     }
 
     /// The gradient engine.
@@ -291,6 +301,11 @@ impl<M: SensitiveDae> ConstrainedProblem for DesignProblem<'_, M> {
     }
 
     fn accepted(&self, news: &IterationEvent) {
+        // The design differentiated last.
+        let accepted = self.lock().base.clone();
+        if let (Some(watch), Some(at)) = (&self.watch, accepted) {
+            self.run.progress.tell(&watch(&at));
+        }
         self.run.progress.tell(&Event::Iteration(*news));
         let Some(save) = &self.save else { return };
         let costs = self.costs();

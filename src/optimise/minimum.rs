@@ -34,6 +34,24 @@ pub struct Minimum {
     pub gradients: u64,
 }
 
+impl Minimum {
+    /// A point of which nothing is known, and why.
+    pub fn unknown(outcome: Outcome, x: Vec<f64>, failures: Vec<String>) -> Self {
+        Self {
+            outcome,
+            x,
+            values: None,
+            multipliers: Multipliers::default(),
+            kkt: f64::INFINITY,
+            combined: 1,
+            history: Vec::new(),
+            failures,
+            evaluations: 0,
+            gradients: 0,
+        }
+    }
+}
+
 /// The best point so far, in scaled variables: smaller violation first, then lower objective.
 #[derive(Debug, Clone)]
 pub(super) struct Incumbent {

@@ -20,6 +20,8 @@ pub enum Outcome {
     Infeasible,
     /// The start design could not be simulated.
     StartFailed,
+    /// Only the start design was asked for.
+    Simulated,
     /// Stopped from outside.
     Cancelled,
 }
@@ -55,6 +57,7 @@ impl Outcome {
                  orbit.max_cycles or a looser orbit.periodicity_tolerance (a film that holds tension often has no stable \
                  orbit). If a step did not converge: more orbit.steps_per_cycle, a larger bearing or less load."
             }
+            Self::Simulated => "The start design was simulated; no better one was looked for.",
             Self::Cancelled => {
                 "Stopped on request; the best design found until then is reported, if there was one."
             }

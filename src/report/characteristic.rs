@@ -5,12 +5,11 @@
 use super::csv_file::written;
 use super::figures;
 use super::html::{STYLE, environment};
-use super::{Assumption, Provenance};
+use super::{Assumption, Files, Provenance, ReportFile};
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
 /// Version of the format.
 pub const CHARACTERISTIC_FORMAT: &str = "stribeck-characteristic/1";
@@ -191,14 +190,13 @@ pub fn characteristic_html(found: &Characteristic) -> Result<String, minijinja::
     })
 }
 
-/// Writes `report.json`, `report.html` and one CSV file per table into a folder, which is made if need be.
-pub fn write_characteristic(found: &Characteristic, folder: &Path) -> std::io::Result<()> {
-    std::fs::create_dir_all(folder)?;
-    let json = serde_json::to_string_pretty(found).map_err(std::io::Error::other)?;
-    std::fs::write(folder.join("report.json"), json + "\n")?;
+/// Its files: `report.json`, `report.html` and one CSV file per table.
+pub fn characteristic_files(found: &Characteristic) -> std::io::Result<Vec<ReportFile>> {
+    let mut all = Files::default();
+    all.json(found)?;
     for table in &found.tables {
-        let csv = characteristic_csv(table).map_err(std::io::Error::other)?;
-        std::fs::write(folder.join(format!("{}.csv", table.name)), csv)?;
+        all.add(format!("{}.csv", table.name), characteristic_csv(table))?;
     }
-    std::fs::write(folder.join("report.html"), characteristic_html(found).map_err(std::io::Error::other)?)
+    all.add("report.html", characteristic_html(found))?;
+    Ok(all.0)
 }

@@ -2,7 +2,7 @@
 
 use super::data::TOUCH_MPA;
 use super::maps::Frame;
-use super::{BearingRunningIn, Findings, figures, maps, run_in_figures};
+use super::{BearingRunningIn, Findings, ReportFile, figures, maps, run_in_figures};
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 use serde::Serialize;
@@ -56,13 +56,13 @@ impl RunningInFigures {
     }
 }
 
-/// The page as text.
-pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
+/// Figures of every cycle.
+fn cycle_figures(findings: &Findings) -> Vec<CycleFigures> {
     let report = &findings.report;
     let limit = |quantity: &str, bearing: &str| {
         report.constraints.iter().find(|c| c.quantity == quantity && c.bearing == bearing).map(|c| c.limit)
     };
-    let cycles: Vec<CycleFigures> = findings
+    findings
         .curves
         .iter()
         .enumerate()
@@ -81,11 +81,56 @@ pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
             fill_map: maps::fill_map(c, &format!("fill-{k}")),
             sensitivity_maps: maps::sensitivity_maps(c, &format!("sensitivity-{k}")),
         })
-        .collect();
+        .collect()
+}
+
+/// Figures of every bearing's running-in.
+fn running_in_figures(findings: &Findings) -> Vec<RunningInFigures> {
+    let bearings = findings.report.running_in.iter().flat_map(|r| &r.bearings);
+    bearings.enumerate().map(RunningInFigures::of).collect()
+}
+
+/// The figures of the page one by one, as SVG: `orbit-1.svg` and so on, numbered by cycle or bearing.
+pub fn plots(findings: &Findings) -> Vec<ReportFile> {
+    let mut all = Vec::new();
+    let mut add = |name: String, text: &str| {
+        if text.starts_with("<svg") {
+            all.push(ReportFile { name: format!("{}.svg", name.replace('_', "-")), text: text.to_owned() });
+        }
+    };
+    let cycles = cycle_figures(findings);
+    let cycles = cycles.iter().map(|c| (String::new(), serde_json::to_value(c)));
+    let bearings = running_in_figures(findings);
+    let bearings = bearings.iter().map(|b| ("running-in-".to_owned(), serde_json::to_value(b)));
+    for list in [cycles.collect::<Vec<_>>(), bearings.collect()] {
+        for (k, (prefix, figures)) in list.into_iter().enumerate() {
+            let Ok(serde_json::Value::Object(figures)) = figures else { continue };
+            for (name, figure) in figures {
+                match figure {
+                    serde_json::Value::String(text) => add(format!("{prefix}{name}-{}", k + 1), &text),
+                    serde_json::Value::Array(surfaces) => {
+                        for (text, surface) in surfaces.iter().zip(["shell", "journal"]) {
+                            let text = text.as_str().unwrap_or_default();
+                            add(format!("{prefix}{name}-{surface}-{}", k + 1), text);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+    if !findings.report.history.is_empty() {
+        add("convergence".to_owned(), &figures::convergence(&findings.report, "convergence"));
+    }
+    all
+}
+
+/// The page as text.
+pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
+    let report = &findings.report;
+    let (cycles, running_in) = (cycle_figures(findings), running_in_figures(findings));
     let convergence = (!report.history.is_empty()).then(|| figures::convergence(report, "convergence"));
     let front = report.pareto.as_ref().map(|p| figures::front(p, "front"));
-    let running_in: Vec<RunningInFigures> =
-        report.running_in.iter().flat_map(|r| &r.bearings).enumerate().map(RunningInFigures::of).collect();
     let cylinder = (!findings.cylinder.is_empty()).then(|| figures::cylinder(&findings.cylinder, "cylinder"));
     let study = toml::to_string(&report.provenance.study).unwrap_or_default();
     let mut environment = environment();

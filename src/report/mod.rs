@@ -18,16 +18,16 @@ mod vtk;
 
 pub use characteristic::{
     CHARACTERISTIC_FORMAT, Characteristic, CharacteristicColumn, CharacteristicStatus, CharacteristicTable,
-    characteristic_csv, characteristic_html, write_characteristic,
+    characteristic_csv, characteristic_files, characteristic_html,
 };
 pub use comparison::{
     BestError, COMPARISON_FORMAT, CaseTiming, ComparedCase, Comparison, ComparisonStatus, DifferenceRow,
-    EngineCost, EngineTime, ProvenCase, ProvenQuantity, SpeedUp, Timing, comparison_csv, comparison_html,
-    timing_csv, write_comparison,
+    EngineCost, EngineTime, ProvenCase, ProvenQuantity, SpeedUp, Timing, comparison_csv, comparison_files,
+    comparison_html, timing_csv,
 };
 pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
-pub use html::html;
+pub use html::{html, plots};
 pub use running_in::{
     ApproximationReport, BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, ProfileReport,
     RunningInBlock, RunningInGradientReport, RunningInReport, StageReport, StribeckPoint, WearLimitReport,
@@ -46,32 +46,63 @@ pub fn schema() -> serde_json::Value {
     schemars::schema_for!(Report).to_value()
 }
 
-/// Writes `report.json`, `report.html`, `orbit.csv` and, where there are any, the fields (`sensitivity.csv`, `*.vts`) into a
-/// folder, which is made if need be.
-pub fn write_folder(findings: &Findings, folder: &Path) -> std::io::Result<()> {
-    std::fs::create_dir_all(folder)?;
-    let json = serde_json::to_string_pretty(&findings.report).map_err(std::io::Error::other)?;
-    std::fs::write(folder.join("report.json"), json + "\n")?;
-    std::fs::write(folder.join("orbit.csv"), orbit_csv(findings).map_err(std::io::Error::other)?)?;
+/// One file of a report.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReportFile {
+    /// Name, without a folder.
+    pub name: String,
+    /// Content.
+    pub text: String,
+}
+
+/// Collects the files of a report.
+#[derive(Debug, Default)]
+struct Files(Vec<ReportFile>);
+
+impl Files {
+    fn add<E: Into<Box<dyn std::error::Error + Send + Sync>>>(
+        &mut self,
+        name: impl Into<String>,
+        text: Result<String, E>,
+    ) -> std::io::Result<()> {
+        self.0.push(ReportFile { name: name.into(), text: text.map_err(std::io::Error::other)? });
+        Ok(())
+    }
+
+    fn json(&mut self, report: &impl serde::Serialize) -> std::io::Result<()> {
+        self.add("report.json", serde_json::to_string_pretty(report).map(|text| text + "\n"))
+    }
+}
+
+/// The files of a report: `report.json`, `orbit.csv`, where there are any the fields (`sensitivity.csv`, `*.vts`), `report.html`.
+pub fn files(findings: &Findings) -> std::io::Result<Vec<ReportFile>> {
+    let mut all = Files::default();
+    all.json(&findings.report)?;
+    all.add("orbit.csv", orbit_csv(findings))?;
     if findings.curves.iter().any(|c| c.sensitivity.is_some()) {
-        let csv = sensitivity_csv(findings).map_err(std::io::Error::other)?;
-        std::fs::write(folder.join("sensitivity.csv"), csv)?;
+        all.add("sensitivity.csv", sensitivity_csv(findings))?;
     }
     if let Some(front) = &findings.report.pareto {
-        std::fs::write(folder.join("pareto.csv"), pareto_csv(front).map_err(std::io::Error::other)?)?;
+        all.add("pareto.csv", pareto_csv(front))?;
     }
     if let Some(r) = &findings.report.running_in {
-        let csv = |text: Result<String, csv::Error>| text.map_err(std::io::Error::other);
-        std::fs::write(folder.join("running-in.csv"), csv(running_in_csv(r))?)?;
-        std::fs::write(folder.join("stribeck.csv"), csv(stribeck_csv(r))?)?;
-        std::fs::write(folder.join("wear.csv"), csv(wear_csv(r))?)?;
+        all.add("running-in.csv", running_in_csv(r))?;
+        all.add("stribeck.csv", stribeck_csv(r))?;
+        all.add("wear.csv", wear_csv(r))?;
     }
     for (k, c) in findings.curves.iter().enumerate() {
         for (surface, text) in film_vtk(c) {
-            std::fs::write(folder.join(format!("{surface}-{}.vts", k + 1)), text)?;
+            all.add(format!("{surface}-{}.vts", k + 1), Ok::<_, std::fmt::Error>(text))?;
         }
     }
-    std::fs::write(folder.join("report.html"), html(findings).map_err(std::io::Error::other)?)
+    all.add("report.html", html(findings))?;
+    Ok(all.0)
+}
+
+/// Writes the files of a report into a folder, which is made if need be.
+pub fn write_folder(files: &[ReportFile], folder: &Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    files.iter().try_for_each(|f| std::fs::write(folder.join(&f.name), &f.text))
 }
 
 /// A number with four significant digits, plain if that is readable.

@@ -7,24 +7,33 @@ use kuva::prelude::*;
 
 /// Friction loss over a running-in programme.
 pub fn loss(b: &BearingRunningIn, name: &str) -> String {
-    over_programme(b, |m| m.loss_w, "mean friction loss [W]", name)
+    over_programme(b, |m| m.loss_w, ("mean friction loss [W]", Axis::Near), name)
 }
 
 /// Share of contact in the loss over a running-in programme.
 pub fn share(b: &BearingRunningIn, name: &str) -> String {
-    over_programme(b, |m| 100.0 * m.contact_share, "contact share [%]", name)
+    over_programme(b, |m| 100.0 * m.contact_share, ("contact share [%]", Axis::FromZero), name)
 }
 
 /// Deepest wear over a running-in programme.
 pub fn depth(b: &BearingRunningIn, name: &str) -> String {
-    over_programme(b, |m| m.max_wear_depth_um, "largest wear depth [µm]", name)
+    over_programme(b, |m| m.max_wear_depth_um, ("largest wear depth [µm]", Axis::FromZero), name)
+}
+
+/// Where an axis begins.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Axis {
+    /// At zero.
+    FromZero,
+    /// Near the values, whose change is what counts.
+    Near,
 }
 
 /// A number of every block over time; where a stage ends it jumps.
 fn over_programme(
     b: &BearingRunningIn,
     of: impl Fn(&RunningInBlock) -> f64,
-    label: &str,
+    (label, axis): (&str, Axis),
     name: &str,
 ) -> String {
     let points: Vec<(f64, f64)> = b.blocks.iter().map(|m| (m.time_h, of(m))).collect();
@@ -39,7 +48,8 @@ fn over_programme(
         .with_x_axis_min(0.0)
         .with_x_axis_max(end)
         .with_x_tick_step(step);
-    render(plots, even_up(layout, &up), name)
+    let layout = if axis == Axis::FromZero { even_up(layout, &up) } else { layout };
+    render(plots, layout, name)
 }
 
 /// The shell across its width, new and run in.

@@ -36,6 +36,8 @@ pub struct MinimisedReport {
     pub unit: String,
     /// Saving, per cent; none where the design breaks its limits.
     pub saving_percent: Option<f64>,
+    /// Largest relative excess of the start design over any limit, if known: what it loses is no measure then.
+    pub start_violation: Option<f64>,
 }
 
 /// The leg of a search with `P_alpha`: a weighted mean over a few moments of the march in place of the march itself.
@@ -141,7 +143,8 @@ pub struct BearingRunningIn {
     pub wear_volume_mm3: f64,
     /// Largest depth worn off shell or journal, um.
     pub max_wear_depth_um: f64,
-    /// Time constant with which the loss falls in the last stage, h; none if it does not.
+    /// Time constant with which the loss falls in the last stage, h; none if it does not, or still does when the stage ends: a straight fall
+    /// has half the length of the stage, one that settles at most a third.
     pub time_to_run_in_h: Option<f64>,
     /// The operating points of the objective with new and with run-in surfaces.
     pub operating_points: Vec<BeforeAfter>,
@@ -213,6 +216,8 @@ pub struct CycleState {
     pub contact_loss_w: f64,
     /// Smallest film thickness, um.
     pub min_film_thickness_um: f64,
+    /// Largest film pressure, MPa.
+    pub max_film_pressure_mpa: f64,
     /// Largest contact pressure, MPa.
     pub max_contact_pressure_mpa: f64,
 }
@@ -232,6 +237,8 @@ pub struct RunningInBlock {
     pub contact_share: f64,
     /// Smallest film thickness of the cycle, um.
     pub min_film_thickness_um: f64,
+    /// Largest film pressure of the cycle, MPa.
+    pub max_film_pressure_mpa: f64,
     /// Largest contact pressure of the cycle, MPa.
     pub max_contact_pressure_mpa: f64,
     /// Largest depth worn off either surface until then, um.
@@ -249,7 +256,9 @@ pub fn running_in_csv(report: &RunningInReport) -> Result<String, csv::Error> {
         "time_h",
         "loss_w",
         "contact_loss_w",
+        "contact_share",
         "min_film_thickness_um",
+        "max_film_pressure_mpa",
         "max_contact_pressure_mpa",
         "max_wear_depth_um",
         "wear_volume_mm3",
@@ -260,7 +269,9 @@ pub fn running_in_csv(report: &RunningInReport) -> Result<String, csv::Error> {
                 m.time_h,
                 m.loss_w,
                 m.contact_loss_w,
+                m.contact_share,
                 m.min_film_thickness_um,
+                m.max_film_pressure_mpa,
                 m.max_contact_pressure_mpa,
                 m.max_wear_depth_um,
                 m.wear_volume_mm3,

@@ -6,15 +6,15 @@ use super::plans::{BearingPlan, LoadPlan, OperatingPoint};
 use super::robust::RobustPlan;
 use super::vocabulary::QuantityName;
 use crate::cranktrain::{
-    BearingLoad, BearingParameter, BearingSetup, Cylinder, HeatBalance, JournalBearing, LoadTable, MainLoad,
-    VeeEngine,
+    BearingLoad, BearingOutput, BearingParameter, BearingSetup, Cylinder, HeatBalance, JournalBearing,
+    LoadTable, MainLoad, VeeEngine,
 };
 use crate::dae::InvalidParameters;
 use crate::film::{Axial, Cavitation, CavityShear, FilmModel, Mesh, Reynolds, ShortFilm};
 use crate::gradient::{EngineName, engine};
 use crate::math::PeriodicSpline;
-use crate::optimise::{Case, DesignProblem, Limit};
-use crate::run::RunContext;
+use crate::optimise::{Case, DesignProblem, Evaluated, Limit};
+use crate::run::{Event, RunContext};
 use std::sync::Arc;
 
 /// Which bearing and operating point a case is.
@@ -82,9 +82,19 @@ pub fn plan<'r>(
     let linear = study.linear.iter().map(|l| l.row(study.parameters.len())).collect();
     let beside = study.robust.as_ref().map_or_else(Vec::new, RobustPlan::values);
     let engine = engine(engine_name, study.perturbation);
-    let problem = DesignProblem::new(cases, limits, bounds, engine, run).with_linear(linear).beside(beside);
+    let problem = DesignProblem::new(cases, limits, bounds, engine, run)
+        .with_linear(linear)
+        .beside(beside)
+        .watched(thinnest);
     let start = study.parameters.iter().map(|p| p.start).collect();
     Ok(Plan { problem, cases: labels, limits: limit_labels, quantities, start })
+}
+
+/// How thin the films of a design become.
+fn thinnest(at: &Evaluated) -> Event {
+    let gap = BearingOutput::GapMin.index();
+    let all = at.orbits.iter().flat_map(|orbit| orbit.outputs.iter().map(|y| y[gap]));
+    Event::Film { min_thickness_um: 1e6 * all.fold(f64::INFINITY, f64::min) }
 }
 
 /// The loss and whatever is limited for a bearing.

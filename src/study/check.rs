@@ -117,8 +117,18 @@ impl Study {
         Err(StudyErrors { faults, text: text.to_owned() })
     }
 
+    /// The same with nothing to search: its start design is the answer.
+    pub(super) fn without_search(&self) -> Self {
+        let mut study = Self { pareto: None, robust: None, choices: None, worst_case: false, ..self.clone() };
+        study.optimiser.rivals.clear();
+        if let Some(running_in) = &mut study.running_in {
+            running_in.minimise = None;
+        }
+        study
+    }
+
     /// Whether a running-in design is searched.
-    pub(super) fn runs_in(&self) -> bool {
+    pub fn runs_in(&self) -> bool {
         self.running_in.as_ref().is_some_and(|r| r.minimise.is_some())
     }
 

@@ -45,8 +45,17 @@ pub(super) fn constraint(
     let least = faults.get(&c.at_least, &at("at_least"));
     let most = faults.get(&c.at_most, &at("at_most"));
     let quantity = faults.need(&c.quantity, &at("quantity"));
-    if c.at_least.is_absent() == c.at_most.is_absent() {
-        faults.add(path, "give either at_least or at_most");
+    if c.at_least.is_absent() && c.at_most.is_absent() {
+        faults.add(path, "has no limit: give at_least or at_most");
+        return None;
+    }
+    if let (Some(least), Some(most)) = (&least, &most) {
+        faults.add(path, "has at_least and at_most; give one of them, the other in an entry of its own");
+        for (key, text) in [("at_least", least), ("at_most", most)] {
+            if let Some(Err(e)) = quantity.map(|q| limit_si(q, &text.0)) {
+                faults.add(&at(key), format!("found \"{}\": {e}", text.0));
+            }
+        }
         return None;
     }
     let (sense, key, text) = match (least, most) {
@@ -105,7 +114,7 @@ fn needs_contact(path: &str, bearings: &Bearings, only: Option<usize>, faults: &
 }
 
 /// A bearing whose contact rubs off nothing keeps every limit on wear.
-fn needs_wear(path: &str, bearings: &Bearings, only: Option<usize>, faults: &mut Faults) {
+pub(super) fn needs_wear(path: &str, bearings: &Bearings, only: Option<usize>, faults: &mut Faults) {
     let affected = bearings.iter().enumerate().filter(|(b, _)| only.is_none_or(|only| only == *b));
     for (_, (name, plan)) in affected {
         let Some(plan) = plan.as_ref().filter(|p| p.has_contact()) else { continue };

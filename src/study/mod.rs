@@ -34,6 +34,7 @@ mod linear;
 mod loads;
 mod machine;
 mod methods;
+mod model;
 mod observe;
 mod oil;
 mod parameters;
@@ -58,6 +59,7 @@ mod sensitivity;
 mod shapes;
 mod supply;
 mod table;
+mod task;
 mod variables;
 mod viscosity;
 mod vocabulary;
@@ -73,14 +75,16 @@ pub use engines::{EngineComparison, EngineRow, Sweep, compare_engines};
 pub use faults::{Fault, StudyErrors};
 pub use file::StudyFile;
 pub use given::Given;
+pub use model::{ModelInput, ModelOutput, StudyModel};
 pub use plans::{
     BearingPlan, ConstraintPlan, FilmPlan, HeatPlan, OilPlan, OperatingPoint, ParameterPlan, RoughnessPlan,
     SupplyPlan,
 };
 pub use prove::prove;
-pub use run::{run, run_saved};
+pub use run::{run, run_saved, simulate};
 pub use schema::schema;
 pub use searches::SearchPlan;
+pub use task::{Answer, Task, answer};
 
 pub use variables::Variable;
 pub use vocabulary::QuantityName;

@@ -9,12 +9,12 @@ use super::faults::pointer;
 use super::limits::{constraints, linear, unknown_constraints};
 use super::methods::methods;
 use super::pareto::front;
-use super::searches::{Searched, rivals, searches};
+use super::searches::{Searched, rivals, searches, simulated};
 use super::{observe, robust, run_in};
 use crate::optimise::{Minimum, Outcome, curvature};
 use crate::report::{
-    Assumption, CostReport, Curves, Findings, KktReport, ObjectiveReport, OutcomeReport, Provenance,
-    REPORT_FORMAT, Report,
+    Assumption, ChoicesReport, CostReport, Curves, Findings, KktReport, ObjectiveReport, OutcomeReport,
+    Provenance, REPORT_FORMAT, Report,
 };
 use crate::run::{Cancel, Cost, Event, NoStore, RunContext, Store};
 use std::time::Instant;
@@ -24,21 +24,44 @@ pub fn run(study: &Study, context: RunContext<'_>) -> Findings {
     run_saved(study, context, &NoStore)
 }
 
+/// Simulates the start design, and runs it in if the study says how; nothing is searched.
+pub fn simulate(study: &Study, context: RunContext<'_>) -> Findings {
+    let began = Instant::now();
+    let study = &study.without_search();
+    tell(context, "simulating");
+    match simulated(study, context) {
+        Ok(found) => answered(study, (study, found, None), (context, &NoStore), began),
+        Err(reason) => failed(study, reason, began),
+    }
+}
+
 /// The same with checkpoints: a run that was stopped goes on where it was, to the same report.
 pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Store) -> Findings {
     let began = Instant::now();
-    let stage = |name: &str| context.progress.tell(&Event::Stage { name: name.to_owned() });
-    stage("optimising");
+    tell(context, "optimising");
     let found = match &study.choices {
         Some(choices) => choose(choices, context, store).map(|(s, found, table)| (s, found, Some(table))),
         None => searches(study, None, "", context, store).map(|found| (study, found, None)),
     };
-    let (given, (study, searched, choices)) = match found {
-        Ok(found) => (study, found),
-        Err(reason) => return failed(study, reason, began),
-    };
+    match found {
+        Ok(found) => answered(study, found, (context, store), began),
+        Err(reason) => failed(study, reason, began),
+    }
+}
+
+fn tell(context: RunContext<'_>, stage: &str) {
+    context.progress.tell(&Event::Stage { name: stage.to_owned() });
+}
+
+/// Everything that is known about the design a search of the given study ended with.
+fn answered<'r>(
+    given: &Study,
+    (study, searched, choices): (&Study, Searched<'r>, Option<ChoicesReport>),
+    (context, store): (RunContext<'r>, &'r dyn Store),
+    began: Instant,
+) -> Findings {
     let (plan, minimum) = (&searched.plan, &searched.minimum);
-    stage("checking the design");
+    tell(context, "checking the design");
     let known = minimum.values.as_ref().and_then(|_| revisit(study, plan, minimum, context));
     let optimum = known.as_ref().map(|known| known.optimum.clone());
     let mut findings = report(study, &searched, known, context);
@@ -47,6 +70,10 @@ pub fn run_saved<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Stor
             findings.report.robust = robust::report(study, plan, &minimum.x, optimum, context);
         }
         findings.report.running_in = run_in::report(study, &searched, context);
+        if let Some(r) = findings.report.running_in.as_ref().and_then(|r| r.gradient.as_ref()) {
+            let design = findings.report.design.iter_mut().zip(&r.effect_w_per_percent);
+            design.for_each(|(d, effect)| d.effect_w_per_percent = Some(*effect));
+        }
         let report = &mut findings.report;
         if let Some(r) = report.running_in.as_mut().filter(|r| r.limits.iter().any(|l| !l.met)) {
             // As with its other limits.
@@ -111,14 +138,14 @@ fn report(study: &Study, found: &Searched, known: Option<Known>, context: RunCon
             // A design that breaks its limits saves nothing.
             report.objective.saving_percent = None;
         }
-        if minimum.outcome != Outcome::Cancelled {
+        if !matches!(minimum.outcome, Outcome::Cancelled | Outcome::Simulated) {
+            report.gradient = gradient(study, plan, &minimum.x, &known.optimum, &mut all, context).ok();
+            price_parameters(study, found, &mut report.design);
             let plain = study.robust.is_none() && !study.worst_case && !study.runs_in();
             if plain && matches!(minimum.outcome, Outcome::Converged | Outcome::AlmostConverged) {
                 report.kkt.curvature = curvature(&plan.problem, &minimum.x, &minimum.multipliers).ok();
                 report.kkt.verdict = report.kkt.curvature.as_ref().map(|c| c.verdict().to_owned());
             }
-            report.gradient = gradient(study, plan, &minimum.x, &known.optimum, &mut all, context).ok();
-            price_parameters(study, found, &mut report.design);
         }
         findings.curves = all;
     }

@@ -9,6 +9,7 @@ use super::run_in_curves::{profile, stribeck};
 use super::running_in::{RunningInPlan, StagePlan};
 use super::searches::Searched;
 use crate::cranktrain::{BearingOutput, JournalBearing, SurfaceField};
+use crate::optimise::Outcome;
 use crate::report::{
     BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, RunningInBlock, RunningInGradientReport,
     RunningInReport, StageReport, WearLimitReport,
@@ -22,6 +23,8 @@ use crate::units::tidy;
 
 /// Seconds of an hour.
 const HOUR_S: f64 = 3600.0;
+/// A loss that falls along a straight line has a time constant of half the stage; one that settles has at most this share of it.
+const SETTLED: f64 = 1.0 / 3.0;
 
 /// Runs in every bearing of a design; none if the study does not ask for it.
 pub(super) fn report(study: &Study, found: &Searched, context: RunContext<'_>) -> Option<RunningInReport> {
@@ -30,7 +33,7 @@ pub(super) fn report(study: &Study, found: &Searched, context: RunContext<'_>) -
     let stage = |s: &StagePlan| StageReport {
         name: s.point.name.clone(),
         duration_h: s.duration_s / HOUR_S,
-        speed_rpm: s.point.speed_rad_s * 30.0 / std::f64::consts::PI,
+        speed_rpm: tidy(s.point.speed_rad_s * 30.0 / std::f64::consts::PI),
         load_factor: s.point.load_factor,
         oil_inlet_temperature_c: s.inlet_k.map(|t| tidy(t - 273.15)),
     };
@@ -67,14 +70,15 @@ fn minimised(wanted: &RunningInPlan, found: &Searched) -> Option<MinimisedReport
         RunningInQuantity::EnergyLost => {
             ("energy lost over the programme, all bearings", 1e-3 * wanted.objective_scale(), "kJ")
         }
-        _ => ("friction loss meant over the programme, all bearings", 1.0, "W"),
+        _ => ("mean friction loss over the programme, all bearings", 1.0, "W"),
     };
     let end = found.run_in.as_ref()?;
     let (start, optimum) = (scale * end.start, scale * found.minimum.values.as_ref()?.objective);
     let rough = end.approximation.as_ref().is_some_and(|a| !a.final_leg);
     let quantity = if rough { format!("{quantity}, approximated") } else { quantity.to_owned() };
     let saving_percent = Some(100.0 * (1.0 - optimum / start));
-    Some(MinimisedReport { quantity, start, optimum, unit: unit.to_owned(), saving_percent })
+    let start_violation = end.start_violation;
+    Some(MinimisedReport { quantity, start, optimum, unit: unit.to_owned(), saving_percent, start_violation })
 }
 
 /// The limits on wear of a running-in design: behind those of the study, per bearing.
@@ -83,6 +87,7 @@ fn limits(study: &Study, wanted: &RunningInPlan, found: &Searched) -> Vec<WearLi
         return Vec::new();
     };
     let tolerance = study.optimiser.options.settings.tolerance.max(MET);
+    let optimal = matches!(found.minimum.outcome, Outcome::Converged | Outcome::AlmostConverged);
     let mut rows = Vec::new();
     for (b, bearing) in study.bearings.iter().enumerate() {
         for of in wanted.limits_of(b) {
@@ -100,7 +105,11 @@ fn limits(study: &Study, wanted: &RunningInPlan, found: &Searched) -> Vec<WearLi
                 unit: words.unit().to_owned(),
                 active,
                 met: *excess <= tolerance,
-                price_w_per_unit: if active { multiplier * slope.abs() / words.per_si() } else { 0.0 },
+                price_w_per_unit: if active && optimal {
+                    multiplier * slope.abs() / words.per_si()
+                } else {
+                    0.0
+                },
             });
         }
     }
@@ -177,7 +186,9 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
     (found.first_loss_w, found.final_loss_w) = (first, last);
     found.wear_volume_mm3 = value(RunningInQuantity::WearVolume) * 1e9;
     found.max_wear_depth_um = largest(&course.worn_m) * 1e6;
-    found.time_to_run_in_h = falls(first, last).then(|| value(RunningInQuantity::TimeToRunIn) / HOUR_S);
+    let time_s = value(RunningInQuantity::TimeToRunIn);
+    let settles = falls(first, last) && time_s <= SETTLED * course.last_duration_s;
+    found.time_to_run_in_h = settles.then_some(time_s / HOUR_S);
     found.wear_depth_um = whole_width(model, &course.worn_m.shell, 1e6);
     found.journal_wear_depth_um = whole_width(model, &course.worn_m.journal, 1e6);
     found.refused_blocks = course.refused;
@@ -191,6 +202,7 @@ fn fill(found: &mut BearingRunningIn, wanted: &RunningInPlan, stages: &[Stage], 
             contact_loss_w: state.contact_loss_w,
             contact_share: rate.contact_share(),
             min_film_thickness_um: state.min_film_thickness_um,
+            max_film_pressure_mpa: state.max_film_pressure_mpa,
             max_contact_pressure_mpa: state.max_contact_pressure_mpa,
             max_wear_depth_um: largest(worn) * 1e6,
             wear_volume_mm3: worn_volume_m3(worn, model) * 1e9,
@@ -213,6 +225,7 @@ fn state(rate: &Rate) -> CycleState {
         loss_w: rate.loss_w(),
         contact_loss_w: rate.mean(BearingOutput::ContactLoss),
         min_film_thickness_um: all(BearingOutput::GapMin).fold(f64::INFINITY, f64::min) * 1e6,
+        max_film_pressure_mpa: all(BearingOutput::PressurePeak).fold(0.0, f64::max) * 1e-6,
         max_contact_pressure_mpa: all(BearingOutput::ContactPeak).fold(0.0, f64::max) * 1e-6,
     }
 }

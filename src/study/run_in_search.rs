@@ -8,9 +8,7 @@ use super::programme::programme;
 use super::running_in::RunningInPlan;
 use super::running_in_design::{Proof, RunningInProblem, Work};
 use super::seek::End;
-use crate::optimise::{
-    Budget, ConstrainedProblem, EvaluationError, Minimum, Multipliers, Outcome, SearchOptions, search,
-};
+use crate::optimise::{Budget, ConstrainedProblem, EvaluationError, Minimum, Outcome, SearchOptions, search};
 use crate::report::ApproximationReport;
 use crate::run::{Event, RunContext};
 use crate::running_in::weights;
@@ -137,18 +135,7 @@ fn stopped(start: &[f64], why: &EvaluationError) -> Minimum {
             (Outcome::StartFailed, vec![format!("the start design cannot be run in: {reason}")])
         }
     };
-    Minimum {
-        outcome,
-        x: start.to_vec(),
-        values: None,
-        multipliers: Multipliers::default(),
-        kkt: f64::INFINITY,
-        combined: 1,
-        history: Vec::new(),
-        failures,
-        evaluations: 0,
-        gradients: 0,
-    }
+    Minimum::unknown(outcome, start.to_vec(), failures)
 }
 
 /// A leg behind those before it.

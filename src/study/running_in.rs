@@ -2,7 +2,7 @@
 
 use super::Given;
 use super::bearings::Bearings;
-use super::constraints::constraint;
+use super::constraints::{constraint, needs_wear};
 use super::faults::{Faults, join};
 use super::file::{
     AccelerationName, FilmModelName, ParameterFile, RunningInFile, RunningInGoalName, StageFile, StudyFile,
@@ -139,6 +139,7 @@ pub(super) fn running_in(
     for (name, _) in bearings.iter().filter(|(_, b)| b.as_ref().is_some_and(|b| !b.has_contact())) {
         faults.add(PATH, format!("bearing \"{name}\" cannot touch: give it a roughness with a contact"));
     }
+    needs_wear(PATH, bearings, None, faults);
     let mut plan = march_plan(r, faults);
     plan.limits = limits(r, faults);
     plan.limits.extend(in_the_end(r, bearings, sharpness, faults));
@@ -150,9 +151,10 @@ pub(super) fn running_in(
         RunningInGoalName::FinalLoss => RunningInQuantity::final_loss(),
     });
     if r.minimise.is_absent() {
-        let why = "only a running-in design is searched within limits on wear; give running_in.minimise";
-        let why_limits = "only a running-in design is searched within limits on the surfaces in the end; give running_in.minimise";
-        let why_first = "only the search of a running-in design can begin so; give running_in.minimise";
+        let why = "only a running-in design is searched within limits on wear, and running_in.minimise would ask for one";
+        let why_limits = "only a running-in design is searched within limits on the surfaces in the end, and running_in.minimise would ask for one";
+        let why_first =
+            "only the search of a running-in design can begin so, and running_in.minimise would ask for one";
         faults.unused(&r.max_wear_depth, &at("max_wear_depth"), why);
         faults.unused(&r.max_wear_volume, &at("max_wear_volume"), why);
         faults.unused(&r.max_energy_lost, &at("max_energy_lost"), why);

@@ -10,7 +10,9 @@ use super::run_in_search::RunInEnd;
 use super::running_in_design::Work;
 use super::seek::{End, seek};
 use crate::gradient::EngineName;
-use crate::optimise::{Method, Minimum, Outcome, Polished, SearchOptions, latin_hypercube};
+use crate::optimise::{
+    ConstrainedProblem, EvaluationError, Method, Minimum, Outcome, Polished, SearchOptions, latin_hypercube,
+};
 use crate::report::{LocalOptimum, RivalRun, StartRun, StartsReport};
 use crate::run::{Cost, Event, RunContext, Silent, Store};
 use rayon::prelude::*;
@@ -126,6 +128,20 @@ pub(super) fn searches<'r>(
     // The saving is against the study's start, whichever start led to the best design.
     plan.start = study.parameters.iter().map(|p| p.start).collect();
     Ok(Searched { plan, minimum, shares, polished, marches, run_in, starts: Some(report), others })
+}
+
+/// The start design in place of a search.
+pub(super) fn simulated<'r>(study: &Study, context: RunContext<'r>) -> Result<Searched<'r>, String> {
+    let plan = plan(study, study.engine, context).map_err(|e| e.to_string())?;
+    let (outcome, values, failures) = match plan.problem.values(&plan.start) {
+        Ok(values) => (Outcome::Simulated, Some(values), Vec::new()),
+        Err(EvaluationError::Cancelled) => (Outcome::Cancelled, None, Vec::new()),
+        Err(EvaluationError::Failed(reason)) => (Outcome::StartFailed, None, vec![reason]),
+    };
+    let minimum = Minimum { values, ..Minimum::unknown(outcome, plan.start.clone(), failures) };
+    let (marches, others) = Default::default();
+    let shares = Vec::new();
+    Ok(Searched { plan, minimum, shares, polished: None, marches, run_in: None, starts: None, others })
 }
 
 /// Designs simulated for a plan.

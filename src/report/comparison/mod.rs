@@ -6,7 +6,7 @@ mod figures;
 mod page;
 mod tables;
 
-pub use page::{comparison_html, write_comparison};
+pub use page::{comparison_files, comparison_html};
 pub use tables::{comparison_csv, timing_csv};
 
 use super::{Assumption, Provenance};

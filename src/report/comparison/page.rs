@@ -1,13 +1,13 @@
-//! The page and the folder of a comparison.
+//! The page and the files of a comparison.
 
 use super::super::html::{STYLE, environment};
+use super::super::{Files, ReportFile};
 use super::figures::{self, Price};
 use super::{ComparedCase, Comparison, ProvenQuantity, comparison_csv, timing_csv};
 use crate::gradient::{CEN_AGREES, ENGINES_AGREE, EngineName};
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 use serde::Serialize;
-use std::path::Path;
 
 const TEMPLATE: &str = include_str!("comparison.html.j2");
 
@@ -62,16 +62,16 @@ fn prices(found: &Comparison, points: impl Fn(EngineName) -> Vec<(f64, f64)>) ->
     found.engines.iter().map(|&engine| Price { engine, points: points(engine) }).collect()
 }
 
-/// Writes `report.json`, `report.html` and the CSV files into a folder, which is made if need be.
-pub fn write_comparison(found: &Comparison, folder: &Path) -> std::io::Result<()> {
-    std::fs::create_dir_all(folder)?;
-    let json = serde_json::to_string_pretty(found).map_err(std::io::Error::other)?;
-    std::fs::write(folder.join("report.json"), json + "\n")?;
+/// Its files: `report.json`, `report.html` and CSV.
+pub fn comparison_files(found: &Comparison) -> std::io::Result<Vec<ReportFile>> {
+    let mut all = Files::default();
+    all.json(found)?;
     for (name, text) in comparison_csv(found).map_err(std::io::Error::other)? {
-        std::fs::write(folder.join(name), text)?;
+        all.add(name, Ok::<_, std::fmt::Error>(text))?;
     }
-    std::fs::write(folder.join("timing.csv"), timing_csv(found).map_err(std::io::Error::other)?)?;
-    std::fs::write(folder.join("report.html"), comparison_html(found).map_err(std::io::Error::other)?)
+    all.add("timing.csv", timing_csv(found))?;
+    all.add("report.html", comparison_html(found))?;
+    Ok(all.0)
 }
 
 impl ComparedCase {
