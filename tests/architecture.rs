@@ -15,6 +15,7 @@ const FLOORS: &[&[&str]] = &[
     &["optimise", "running_in"],
     &["report"],
     &["study"],
+    &["service"],
     &["cli"],
 ];
 
@@ -33,6 +34,12 @@ const ROOMS: &[(&str, &str)] = &[
     ("jsonc_parser", "study"),
     ("toml", "study"),
     ("num_dual", "dae"),
+    ("axum", "service"),
+    ("sqlx", "service"),
+    ("utoipa", "service"),
+    ("tower_http", "service"),
+    ("governor", "service"),
+    ("metrics", "service"),
 ];
 
 fn sources() -> Vec<(PathBuf, String)> {
