@@ -11,8 +11,9 @@
 //! | floor | module | what lives there |
 //! |---|---|---|
 //! | roof | `main.rs` | hands the exit code to the system |
-//! | 9 | [`cli`] | how people come in: `run`, `check`, `schema`, `gradient` |
-//! | 8 | [`study`] | what was asked: study file, checks, the run; the single door below the roof |
+//! | 10 | [`cli`] | how people come in: `run`, `check`, `schema`, `gradient`, `serve`, `worker`, `key` |
+//! | 9 | [`service`] | how programs come in: HTTP, the queue of jobs, workers, UM-Bridge, the page |
+//! | 8 | [`study`] | what was asked: study file, checks, the run; the single door for people and programs |
 //! | 7 | [`report`] | the answer as data, tables, figures, page |
 //! | 6 | [`optimise`], [`running_in`] | which design next: SQP as an argmin solver over Clarabel, an augmented Lagrangian, COBYLA; wear through a programme of operating points, with its gradient |
 //! | 5 | [`gradient`] | derivatives of cycle quantities by five engines: FW, BW, CEN, TRA, ADJ |
@@ -32,7 +33,7 @@
 //!     --> Report (JSON, HTML, CSV)
 //! ```
 //!
-//! SI units and radians inside; a public name carries its unit. Everything below the roof is synchronous and deterministic.
+//! SI units and radians inside; a public name carries its unit. Everything but the service is synchronous and deterministic.
 //!
 //! # From code
 //!
@@ -61,5 +62,6 @@ pub mod orbit;
 pub mod report;
 pub mod run;
 pub mod running_in;
+pub mod service;
 pub mod study;
 pub mod units;

@@ -23,6 +23,7 @@ mod resume;
 mod running_in;
 mod running_in_gradients;
 mod sensitivity;
+mod service;
 mod study_physics;
 
 #[global_allocator]

@@ -1,4 +1,4 @@
-//! The command line: `stribeck run | check | schema | gradient`.
+//! The command line: `stribeck run | check | schema | gradient | serve | worker | key`.
 //!
 //! Answers go to standard output, progress and errors to standard error. Colours and progress bars appear on terminals
 //! only. Exit codes are part of the interface, see [`exit_code`].
@@ -8,6 +8,7 @@ mod design_tables;
 mod faults;
 mod progress;
 mod proof_tables;
+mod serve;
 mod tables;
 
 use crate::gradient::EngineName;
@@ -67,6 +68,12 @@ enum Command {
     Schema(SchemaArguments),
     /// Computes the gradient at the start design, with one engine or all five side by side, or checks it.
     Gradient(GradientArguments),
+    /// Serves jobs over HTTP, with workers inside.
+    Serve(serve::ServeArguments),
+    /// Works on the jobs of a database that other processes serve.
+    Worker(serve::WorkerArguments),
+    /// Makes, lists and takes back keys of the service.
+    Key(serve::KeyArguments),
 }
 
 #[derive(Debug, Args)]
@@ -162,6 +169,9 @@ pub fn main() -> ExitCode {
         Command::Check(a) => commands::check(a),
         Command::Schema(a) => commands::schema(a),
         Command::Gradient(a) => commands::gradient(a),
+        Command::Serve(a) => Ok(serve::run_service(a)),
+        Command::Worker(a) => Ok(serve::run_worker(a)),
+        Command::Key(a) => Ok(serve::run_keys(a)),
     };
     ExitCode::from(code.unwrap_or_else(|stop| stop.tell()))
 }

@@ -1,0 +1,165 @@
+//! Bodies, queries and studies of requests, with every mistake as a problem document.
+
+use super::problem::{FieldError, Problem, of_study};
+use crate::service::limits::Limits;
+use crate::study::{Format, Study};
+use axum::body::Bytes;
+use axum::extract::rejection::BytesRejection;
+use axum::extract::{FromRequest, FromRequestParts, Request};
+use axum::http::request::Parts;
+use axum::http::{StatusCode, header};
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+
+/// A JSON object.
+pub struct Body(pub Map<String, Value>);
+
+impl<S: Send + Sync> FromRequest<S> for Body {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, state: &S) -> Result<Self, Problem> {
+        let kind = request.headers().get(header::CONTENT_TYPE).and_then(|v| v.to_str().ok()).unwrap_or("");
+        let media = kind.split(';').next().unwrap_or("").trim().to_ascii_lowercase();
+        if media != "application/json" {
+            let problem = Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "not-json", "The body is no JSON");
+            return Err(problem.detail("Send it with Content-Type: application/json."));
+        }
+        let bytes = Bytes::from_request(request, state).await.map_err(|e| too_large(&e))?;
+        match serde_json::from_slice(&bytes) {
+            Ok(Value::Object(fields)) => Ok(Self(fields)),
+            Ok(_) => Err(Problem::unreadable("The body must be a JSON object.")),
+            Err(e) => Err(Problem::unreadable(format!("The body is no JSON: {e}."))),
+        }
+    }
+}
+
+fn too_large(rejection: &BytesRejection) -> Problem {
+    match rejection.status() {
+        StatusCode::PAYLOAD_TOO_LARGE => {
+            Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "too-large", "The body is too large")
+                .detail("Put fewer jobs into a batch, or shorter tables into a study.")
+        }
+        _ => Problem::unreadable("The body ended early."),
+    }
+}
+
+/// The query of a request.
+pub struct Query<T>(pub T);
+
+impl<S: Send + Sync, T: DeserializeOwned> FromRequestParts<S> for Query<T> {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
+        match axum::extract::Query::try_from_uri(&parts.uri) {
+            Ok(axum::extract::Query(value)) => Ok(Self(value)),
+            Err(e) => Err(Problem::unreadable(format!("The query is wrong: {}.", e.body_text()))),
+        }
+    }
+}
+
+/// Fields of a request's object, taken one by one; what is left at the end is unknown.
+pub struct Fields {
+    left: Map<String, Value>,
+    at: String,
+    /// Mistakes so far.
+    pub errors: Vec<FieldError>,
+}
+
+impl Fields {
+    /// Of an object that stands at a path.
+    pub fn new(left: Map<String, Value>, at: &str) -> Self {
+        Self { left, at: at.to_owned(), errors: Vec::new() }
+    }
+
+    fn path(&self, key: &str) -> String {
+        if self.at.is_empty() { key.to_owned() } else { format!("{}.{key}", self.at) }
+    }
+
+    /// Notes a mistake.
+    pub fn wrong(&mut self, key: &str, message: impl Into<String>) {
+        let path = self.path(key);
+        self.errors.push(FieldError { path, message: message.into() });
+    }
+
+    /// A field, if it is there and not null.
+    pub fn take(&mut self, key: &str) -> Option<Value> {
+        self.left.remove(key).filter(|v| !v.is_null())
+    }
+
+    /// A field of some type.
+    pub fn get<T: DeserializeOwned>(&mut self, key: &str, wanted: &str) -> Option<T> {
+        let value = self.take(key)?;
+        let found = shortened(&value);
+        match serde_json::from_value(value) {
+            Ok(value) => Some(value),
+            Err(_) => {
+                self.wrong(key, format!("found {found}: expected {wanted}"));
+                None
+            }
+        }
+    }
+
+    /// The study: an object in the form of the study file, or the text of one in TOML. Files are not read.
+    pub fn study(&mut self, limits: &Limits) -> Option<Study> {
+        let path = self.path("study");
+        let read = match self.take("study") {
+            None => {
+                self.wrong("study", "is missing: give a study as JSON object, or as TOML text");
+                return None;
+            }
+            Some(Value::String(toml)) => Study::read(&toml, Format::Toml, None),
+            Some(value @ Value::Object(_)) => Study::read(&value.to_string(), Format::Json, None),
+            Some(other) => {
+                let found = shortened(&other);
+                self.wrong("study", format!("found {found}: expected an object, or TOML text"));
+                return None;
+            }
+        };
+        match read {
+            Err(e) => {
+                self.errors.extend(of_study(&e.faults, &path));
+                None
+            }
+            Ok(study) => {
+                let beyond = limits.exceeded_by(&study);
+                let of =
+                    |(key, message): (String, String)| FieldError { path: format!("{path}.{key}"), message };
+                let fits = beyond.is_empty();
+                self.errors.extend(beyond.into_iter().map(of));
+                fits.then_some(study)
+            }
+        }
+    }
+
+    /// Ends: fields that nobody took are mistakes.
+    pub fn finish(mut self, known: &[&str]) -> Vec<FieldError> {
+        let names: Vec<String> = self.left.keys().cloned().collect();
+        for name in names {
+            self.wrong(&name, format!("is not known; known are {}", known.join(", ")));
+        }
+        self.errors
+    }
+}
+
+/// A value as it is told in a mistake.
+fn shortened(value: &Value) -> String {
+    let text = value.to_string();
+    match text.char_indices().nth(60) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text,
+    }
+}
+
+/// What stands in the address.
+pub struct Place<T>(pub T);
+
+impl<S: Send + Sync, T: DeserializeOwned + Send> FromRequestParts<S> for Place<T> {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        match axum::extract::Path::<T>::from_request_parts(parts, state).await {
+            Ok(axum::extract::Path(value)) => Ok(Self(value)),
+            Err(_) => Err(Problem::not_found("address")),
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Who asks: a key in the request, unless keys are off; and how often.
+//!
+//! A key comes as `Authorization: Bearer KEY`, or as the password of `Authorization: Basic`, which clients that know only an address
+//! can write into it (`http://key:KEY@HOST/`).
+
+use super::App;
+use super::problem::Problem;
+use crate::service::store::Store;
+use axum::extract::{ConnectInfo, Request, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use governor::clock::{Clock, DefaultClock};
+use governor::{Quota, RateLimiter};
+use std::net::SocketAddr;
+use std::num::NonZeroU32;
+use std::sync::Arc;
+
+/// Whose jobs a request sees.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Owner {
+    /// Id of the key; "local" where none is needed.
+    pub id: String,
+    /// Address of the caller, if known.
+    pub remote: Option<String>,
+}
+
+type Limiter = RateLimiter<String, governor::state::keyed::DefaultKeyedStateStore<String>, DefaultClock>;
+
+/// The guard.
+#[derive(Clone)]
+pub struct Guard {
+    store: Store,
+    keys: bool,
+    limiter: Option<Arc<Limiter>>,
+}
+
+impl Guard {
+    /// For a service.
+    pub fn new(app: &App) -> Self {
+        let per_second = app.limits.requests_per_s.and_then(NonZeroU32::new);
+        let limiter = per_second.map(|n| Arc::new(RateLimiter::keyed(Quota::per_second(n))));
+        Self { store: app.store.clone(), keys: app.keys, limiter }
+    }
+
+    async fn owner(&self, headers: &HeaderMap, remote: Option<String>) -> Result<Owner, Problem> {
+        if !self.keys {
+            return Ok(Owner { id: "local".to_owned(), remote });
+        }
+        let problem = |title: &str| {
+            Problem::new(StatusCode::UNAUTHORIZED, "no-valid-key", title)
+                .detail("Send a key as Authorization: Bearer KEY; 'stribeck key create NAME' makes one.")
+        };
+        let Some(secret) = secret(headers) else { return Err(problem("A key is needed")) };
+        match self.store.key_of(&secret).await? {
+            Some(id) => Ok(Owner { id, remote }),
+            None => Err(problem("The key is not valid")),
+        }
+    }
+
+    fn in_rate(&self, who: &str) -> Result<(), Problem> {
+        let Some(limiter) = &self.limiter else { return Ok(()) };
+        let Err(early) = limiter.check_key(&who.to_owned()) else { return Ok(()) };
+        let seconds = early.wait_time_from(DefaultClock::default().now()).as_secs() + 1;
+        let problem = Problem::new(StatusCode::TOO_MANY_REQUESTS, "too-many-requests", "Too many requests");
+        Err(problem.detail("Ask less often; a batch submits many jobs at once.").retry_after(seconds))
+    }
+}
+
+/// Lets a request through with its owner.
+pub async fn guard(State(guard): State<Guard>, mut request: Request, next: Next) -> Response {
+    let address = request.extensions().get::<ConnectInfo<SocketAddr>>().map(|c| c.0.ip().to_string());
+    let who = address.clone().unwrap_or_default();
+    // Guesses at keys are counted by address, everything else by key.
+    let owner = match guard.owner(request.headers(), address).await {
+        Ok(owner) => owner,
+        Err(problem) => return guard.in_rate(&who).err().unwrap_or(problem).into_response(),
+    };
+    if let Err(problem) = guard.in_rate(&owner.id) {
+        return problem.into_response();
+    }
+    request.extensions_mut().insert(owner);
+    next.run(request).await
+}
+
+fn secret(headers: &HeaderMap) -> Option<String> {
+    let value = headers.get(header::AUTHORIZATION)?.to_str().ok()?;
+    let (scheme, rest) = value.split_once(' ')?;
+    match scheme.to_ascii_lowercase().as_str() {
+        "bearer" => Some(rest.trim().to_owned()),
+        "basic" => {
+            let text = String::from_utf8(base64(rest.trim())?).ok()?;
+            Some(text.split_once(':')?.1.to_owned())
+        }
+        _ => None,
+    }
+}
+
+/// Bytes of a text in base 64 (RFC 4648).
+fn base64(text: &str) -> Option<Vec<u8>> {
+    let digit = |c: u8| match c {
+        b'A'..=b'Z' => Some(c - b'A'),
+        b'a'..=b'z' => Some(c - b'a' + 26),
+        b'0'..=b'9' => Some(c - b'0' + 52),
+        b'+' => Some(62),
+        b'/' => Some(63),
+        _ => None,
+    };
+    let digits: Vec<u32> =
+        text.trim_end_matches('=').bytes().map(|c| digit(c).map(u32::from)).collect::<Option<_>>()?;
+    let bytes = |group: &[u32]| {
+        let word = (0..4).fold(0, |w, k| (w << 6) | group.get(k).copied().unwrap_or(0));
+        word.to_be_bytes()[1..group.len()].to_vec()
+    };
+    Some(digits.chunks(4).flat_map(bytes).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{base64, secret};
+    use axum::http::{HeaderMap, HeaderValue, header};
+
+    #[test]
+    fn keys_are_read_from_both_forms() {
+        let of = |text: &str| {
+            let mut headers = HeaderMap::new();
+            headers.insert(header::AUTHORIZATION, HeaderValue::from_str(text).unwrap());
+            secret(&headers)
+        };
+        assert_eq!(of("Bearer abc").as_deref(), Some("abc"));
+        assert_eq!(of("Basic a2V5OmFiYw==").as_deref(), Some("abc"));
+        assert_eq!(of("Basic ????"), None);
+        assert_eq!(of("Digest x"), None);
+        for (text, bytes) in [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYg", "foob")] {
+            assert_eq!(base64(text).unwrap(), bytes.as_bytes());
+        }
+    }
+}

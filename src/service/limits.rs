@@ -1,0 +1,78 @@
+//! What a request may ask for. A study beyond a limit is refused with the key to change, before anything is computed.
+
+use crate::study::Study;
+
+/// The limits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits {
+    /// Size of a request's body, bytes.
+    pub body_bytes: usize,
+    /// Cells of a film, both halves.
+    pub cells: usize,
+    /// Steps of a cycle.
+    pub steps: usize,
+    /// Cycles until an orbit must have settled.
+    pub cycles: usize,
+    /// Design parameters.
+    pub parameters: usize,
+    /// Bearings times operating points.
+    pub cases: usize,
+    /// Jobs of one key that wait or run.
+    pub open_jobs: i64,
+    /// Jobs in one batch.
+    pub batch: usize,
+    /// Requests per second and key, and how many may come at once; none for any number.
+    pub requests_per_s: Option<u32>,
+    /// How long a request that computes may take, s.
+    pub direct_s: u64,
+    /// Cells times steps, cases and parameters of a request that computes, on the safe side.
+    pub direct_work: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            body_bytes: 2 << 20,
+            cells: 40_000,
+            steps: 7200,
+            cycles: 1000,
+            parameters: 1000,
+            cases: 64,
+            open_jobs: 20_000,
+            batch: 1000,
+            requests_per_s: Some(200),
+            direct_s: 30,
+            direct_work: 5e6,
+        }
+    }
+}
+
+impl Limits {
+    /// What of a study exceeds them: key and words.
+    pub fn exceeded_by(&self, study: &Study) -> Vec<(String, String)> {
+        let mut all = Vec::new();
+        let mut most = |found: usize, most: usize, key: &str, what: &str| {
+            if found > most {
+                let words = format!("found {found} {what}: this service computes at most {most}");
+                all.push((key.to_owned(), words));
+            }
+        };
+        most(cells(study), self.cells, "film.cells_around", "cells");
+        most(study.orbit.steps, self.steps, "orbit.steps_per_cycle", "steps per cycle");
+        most(study.orbit.max_cycles, self.cycles, "orbit.max_cycles", "cycles");
+        most(study.parameters.len(), self.parameters, "parameters", "parameters");
+        let cases = study.bearings.len() * study.points.len().max(1);
+        most(cases, self.cases, "objective.operating_points", "bearings times operating points");
+        all
+    }
+
+    /// Whether a study is small enough to be computed while the caller waits.
+    pub fn is_direct(&self, study: &Study) -> bool {
+        let cases = study.bearings.len() * study.points.len().max(1);
+        (cells(study) * study.orbit.steps * cases) as f64 <= self.direct_work
+    }
+}
+
+fn cells(study: &Study) -> usize {
+    study.film.cells_around * 2 * study.film.cells_across_half
+}

@@ -1,0 +1,153 @@
+//! What the service remembers: jobs with their events, files and checkpoints, keys, and who did what. One SQL for a file (SQLite) and a
+//! server (PostgreSQL).
+//!
+//! The row of a job is its place in the queue. A worker *claims* it with a lease; everything it writes later names the worker and the
+//! attempt, so a worker that lost its lease changes nothing any more and a job that ran twice ends once. Leases are prolonged while
+//! the work goes on; what nobody prolonged is *swept* back into the queue, or ends as lost after its last attempt.
+//!
+//! Why no job queue crate: with the best of them (apalis 1.0) a job is two rows in two tables, a crash in mid-job is retried without
+//! limit, a running job can neither be cancelled nor handed back, and a panic leaves it running for ever; each of these would have to
+//! be mended in tables of one's own, which is what stands here.
+//!
+//! SQLite writes through one connection, so nothing ever waits for a lock; readers have their own.
+
+mod events;
+mod files;
+mod jobs;
+mod keys;
+mod queue;
+
+pub use events::{EventRow, NewEvent};
+pub use jobs::{JobFilter, NewJob, Submitted};
+pub use keys::{ApiKey, KeyRow};
+pub use queue::{Claim, Ending, Fence};
+
+use crate::service::job::Job;
+use sqlx::any::{AnyConnectOptions, AnyPoolOptions};
+use sqlx::migrate::{Migration, MigrationType, Migrator};
+use sqlx::{AnyPool, Executor, SqlSafeStr};
+use std::str::FromStr;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use thiserror::Error;
+
+/// Connections that read a file at the same time.
+const READERS: u32 = 4;
+/// Connections to a server.
+const CONNECTIONS: u32 = 16;
+/// How long a request waits for a connection.
+const PATIENCE: Duration = Duration::from_secs(15);
+
+/// The database did not do what it was asked.
+#[derive(Debug, Error)]
+pub enum StoreError {
+    /// It could not be reached, or refused a statement.
+    #[error("database: {0}")]
+    Database(#[from] sqlx::Error),
+    /// Its tables could not be made or are of another version.
+    #[error("database tables: {0}")]
+    Migration(#[from] sqlx::migrate::MigrateError),
+    /// The address is not one of a database.
+    #[error("\"{0}\" is no database: give postgres://USER:PASSWORD@HOST/NAME, or sqlite:FILE")]
+    Address(String),
+}
+
+/// Milliseconds since 1970.
+pub fn now_ms() -> i64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(since.as_millis()).unwrap_or(i64::MAX)
+}
+
+/// A new id that sorts behind those made before.
+pub fn new_id() -> String {
+    uuid::Uuid::now_v7().to_string()
+}
+
+/// The database.
+#[derive(Debug, Clone)]
+pub struct Store {
+    read: AnyPool,
+    write: AnyPool,
+    server: bool,
+}
+
+impl Store {
+    /// Opens a database by its address and brings its tables up to date.
+    pub async fn open(address: &str) -> Result<Self, StoreError> {
+        sqlx::any::install_default_drivers();
+        let server = address.starts_with("postgres://") || address.starts_with("postgresql://");
+        let address = match address.strip_prefix("sqlite:") {
+            Some(file) if !file.contains('?') => format!("sqlite:{file}?mode=rwc"),
+            Some(_) => address.to_owned(),
+            None if server => address.to_owned(),
+            None => return Err(StoreError::Address(address.to_owned())),
+        };
+        let options = AnyConnectOptions::from_str(&address)?;
+        let pool = |most: u32| {
+            AnyPoolOptions::new().max_connections(most).acquire_timeout(PATIENCE).after_connect(
+                move |connection, _| {
+                    Box::pin(async move {
+                        if !server {
+                            let calm = "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; \
+                                        PRAGMA busy_timeout = 15000; PRAGMA foreign_keys = ON;";
+                            connection.execute(calm).await?;
+                        }
+                        Ok(())
+                    })
+                },
+            )
+        };
+        let write = pool(if server { CONNECTIONS } else { 1 }).connect_with(options.clone()).await?;
+        migrations().run(&write).await?;
+        let read = if server { write.clone() } else { pool(READERS).connect_with(options).await? };
+        Ok(Self { read, write, server })
+    }
+
+    /// Whether it answers.
+    pub async fn ping(&self) -> Result<(), StoreError> {
+        sqlx::query("SELECT 1").execute(&self.read).await?;
+        Ok(())
+    }
+
+    /// Lets go of all connections.
+    pub async fn close(&self) {
+        self.read.close().await;
+        self.write.close().await;
+    }
+}
+
+fn migrations() -> Migrator {
+    let simple = MigrationType::Simple;
+    let first = Migration::new(1, "jobs".into(), simple, include_str!("schema.sql").into_sql_str(), false);
+    let mut all = Migrator::with_migrations(vec![first]);
+    all.dangerous_set_table_name("stribeck_migrations");
+    all
+}
+
+/// A row as a job.
+fn job(row: &sqlx::any::AnyRow) -> Result<Job, sqlx::Error> {
+    use sqlx::Row;
+    let parsed = |text: String| serde_json::from_str(&text).ok();
+    let word = |text: &str| {
+        let words = format!("\"{text}\" in a row");
+        serde_json::from_value(serde_json::Value::String(text.to_owned())).map_err(|_| words)
+    };
+    let broken = |words: String| sqlx::Error::Decode(words.into());
+    Ok(Job {
+        id: row.try_get("id")?,
+        owner: row.try_get("owner")?,
+        kind: word(row.try_get("kind")?).map_err(broken)?,
+        state: serde_json::from_value(serde_json::Value::String(row.try_get("state")?))
+            .map_err(|e| sqlx::Error::Decode(e.into()))?,
+        title: row.try_get("title")?,
+        study_hash: row.try_get("study_hash")?,
+        created_ms: row.try_get("created_ms")?,
+        started_ms: row.try_get("started_ms")?,
+        finished_ms: row.try_get("finished_ms")?,
+        attempts: row.try_get("attempts")?,
+        cancel_requested: row.try_get::<i64, _>("cancel_requested")? != 0,
+        progress: row.try_get::<Option<String>, _>("progress")?.and_then(parsed),
+        outcome: row.try_get("outcome")?,
+        problem_code: row.try_get("problem_code")?,
+        problem_detail: row.try_get("problem_detail")?,
+    })
+}
