@@ -7,6 +7,9 @@ use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 use serde::Serialize;
 
+/// The page of an answer that has none of its own.
+const PLAIN: &str = "<!doctype html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{{ title }}</title>\n\
+    <style>{{ style|safe }}</style></head>\n<body><header><h1>{{ title }}</h1></header>\n<main><pre>{{ text }}</pre></main></body>\n</html>\n";
 const TEMPLATE: &str = include_str!("report.html.j2");
 /// Style of all pages.
 pub(super) const STYLE: &str = include_str!("style.css");
@@ -146,6 +149,13 @@ pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
         style => STYLE,
         study,
     })
+}
+
+/// An answer that has no page of its own, as it is.
+pub fn plain_page(title: &str, text: &str) -> Result<String, minijinja::Error> {
+    let mut environment = environment();
+    environment.add_template("plain", PLAIN)?;
+    environment.get_template("plain")?.render(context! { title, text, style => STYLE })
 }
 
 /// What all templates can use.

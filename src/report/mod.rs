@@ -27,7 +27,7 @@ pub use comparison::{
 };
 pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
-pub use html::{html, plots};
+pub use html::{html, plain_page, plots};
 pub use running_in::{
     ApproximationReport, BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, ProfileReport,
     RunningInBlock, RunningInGradientReport, RunningInReport, StageReport, StribeckPoint, WearLimitReport,

@@ -100,7 +100,8 @@ pub async fn serve(options: ServeOptions, ready: impl FnOnce(SocketAddr)) -> Res
     let store = Store::open(&options.database).await?;
     let local = options.address.ip().is_loopback();
     let keys = options.keys.unwrap_or(!local);
-    if !local && !(keys && store.has_keys().await?) {
+    let guarded = keys && store.has_keys().await?;
+    if !local && !guarded {
         return Err(ServiceError::Open(options.address));
     }
     let app = app(store.clone(), options.limits, keys);

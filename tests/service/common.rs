@@ -103,6 +103,10 @@ impl Service {
         self.runtime.as_ref().unwrap().block_on(work)
     }
 
+    pub fn spawn(&self, work: impl Future<Output = ()> + Send + 'static) {
+        self.runtime.as_ref().unwrap().spawn(work);
+    }
+
     pub fn url(&self, path: &str) -> String {
         format!("http://{}{path}", self.address)
     }

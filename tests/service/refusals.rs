@@ -61,7 +61,7 @@ fn requests_that_cannot_be_read_are_told_so() {
     post(&json_type, b"{").problem(400, "unreadable");
     post(&json_type, b"[]").problem(400, "unreadable");
     post(&json_type, b"\xff\xfe").problem(400, "unreadable");
-    post(&[("content-type", "text/plain")], b"{}").problem(415, "not-json");
+    post(&[("content-type", "text/plain")], b"{}").problem(415, "wrong-media-type");
     post(&json_type, &vec![b' '; 5000]).problem(413, "too-large");
     service.get("/v1/nothing").problem(404, "not-found");
     service.get("/v1/jobs/none").problem(404, "not-found");
@@ -124,7 +124,7 @@ fn a_job_that_takes_too_long_ends_with_what_is_known() {
     let (_stop, stopped) = tokio::sync::watch::channel(false);
     let options = WorkerOptions { wall_time: Duration::from_millis(600), ..WorkerOptions::default() };
     let store = service.store.clone();
-    service.wait(async move { tokio::spawn(work(store, options, Default::default(), stopped)) });
+    service.spawn(work(store, options, Default::default(), stopped));
     let job = service.ended(&id);
     assert_eq!((&job["state"], &job["problem"]["code"]), (&json!("failed"), &json!("time-limit")), "{job}");
     assert_eq!(service.get(&format!("/v1/jobs/{id}/result")).status, 200);

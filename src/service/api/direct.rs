@@ -1,7 +1,7 @@
 //! Answers while the caller waits: the check of a study, and values with gradients of a small one.
 
 use super::App;
-use super::extract::{Body, Fields};
+use super::extract::{Fields, StudyBody};
 use super::problem::{AnyProblem, BodyProblem, Problem};
 use crate::optimise::EvaluationError;
 use crate::run::{Cancel, RunContext, Silent};
@@ -38,10 +38,11 @@ pub struct Checked {
 
 /// Checks a study; nothing is kept.
 #[utoipa::path(
-    post, path = "/v1/check", tag = "direct", request_body = CheckRequest,
+    post, path = "/v1/check", tag = "direct",
+    request_body(content((CheckRequest = "application/json"), (String = "application/toml"))),
     responses((status = 200, description = "No mistakes", body = Checked), BodyProblem, AnyProblem)
 )]
-pub async fn check(State(app): State<App>, Body(given): Body) -> Result<Json<Checked>, Problem> {
+pub async fn check(State(app): State<App>, StudyBody(given): StudyBody) -> Result<Json<Checked>, Problem> {
     let mut fields = Fields::new(given, "");
     let study = fields.study(&app.limits);
     let errors = fields.finish(&["study"]);
@@ -104,7 +105,8 @@ pub struct GradientAnswer {
 /// Values and gradients of a small study at a point, while the caller waits. A study that is too large, or takes too long, is one for
 /// a job.
 #[utoipa::path(
-    post, path = "/v1/gradient", tag = "direct", request_body = GradientRequest,
+    post, path = "/v1/gradient", tag = "direct",
+    request_body(content((GradientRequest = "application/json"), (String = "application/toml"))),
     responses(
         (status = 200, description = "Values and gradients", body = GradientAnswer),
         (status = 504, description = "It takes longer than a request may: submit a job", body = Problem,
@@ -112,7 +114,10 @@ pub struct GradientAnswer {
         BodyProblem, AnyProblem
     )
 )]
-pub async fn gradient(State(app): State<App>, Body(given): Body) -> Result<Json<GradientAnswer>, Problem> {
+pub async fn gradient(
+    State(app): State<App>,
+    StudyBody(given): StudyBody,
+) -> Result<Json<GradientAnswer>, Problem> {
     let mut fields = Fields::new(given, "");
     let study = fields.study(&app.limits);
     let point: Option<Map<String, Value>> = fields.get("point", "an object of numbers");

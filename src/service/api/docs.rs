@@ -5,6 +5,7 @@ use axum::{Json, Router};
 use serde_json::Value;
 use utoipa::OpenApi;
 use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityScheme};
+use utoipa::openapi::{RefOr, Schema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_swagger_ui::SwaggerUi;
 
@@ -20,6 +21,7 @@ const EXAMPLE: &str = include_str!("../page/example.toml");
             (RFC 9457) with a stable `code` and every wrong field in `errors`.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
+    components(schemas(super::problem::Problem, super::models::BridgeError, super::models::BridgeErrorBody)),
     tags(
         (name = "jobs", description = "Submit, follow, cancel, delete"),
         (name = "results", description = "Answers as JSON, page, tables, fields, figures"),
@@ -40,12 +42,30 @@ pub fn openapi() -> utoipa::openapi::OpenApi {
         "key",
         SecurityScheme::Http(Http::builder().scheme(HttpAuthScheme::Bearer).build()),
     );
+    examples(&mut api);
     // With or without a key, as the service is run.
     api.security = Some(vec![
         Default::default(),
         utoipa::openapi::SecurityRequirement::new::<_, [&str; 0], &str>("key", []),
     ]);
     api
+}
+
+/// Requests that work, made of the example.
+fn examples(api: &mut utoipa::openapi::OpenApi) {
+    let submission = serde_json::json!({ "kind": "check", "study": EXAMPLE });
+    let all = [
+        ("Batch", serde_json::json!({ "jobs": [submission] })),
+        ("CheckRequest", serde_json::json!({ "study": EXAMPLE })),
+        ("GradientRequest", serde_json::json!({ "study": EXAMPLE, "point": { "big_end.width": 92.0 } })),
+        ("Submission", submission),
+    ];
+    let Some(components) = &mut api.components else { return };
+    for (name, example) in all {
+        if let Some(RefOr::T(Schema::Object(schema))) = components.schemas.get_mut(name) {
+            schema.examples = vec![example];
+        }
+    }
 }
 
 /// `/openapi.json` and `/docs`.

@@ -10,13 +10,37 @@ use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::sse::{Event, KeepAlive, Sse};
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::time::Duration;
 use tokio_stream::Stream;
+use utoipa::{IntoParams, ToSchema};
 
 /// How often the store is looked at for news of one stream.
 const PACE: Duration = Duration::from_millis(300);
+
+/// Where a stream goes on.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Header)]
+#[expect(dead_code, reason = "describes a parameter; none is made of it")]
+pub struct LastEvent {
+    /// Number of the last event that was received.
+    #[param(rename = "Last-Event-ID", required = false, minimum = 0)]
+    last_event_id: i64,
+}
+
+/// One event of the stream.
+#[derive(Debug, Serialize, Deserialize, ToSchema)]
+pub struct SentEvent {
+    /// Number; progress in between and the end have none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub id: Option<String>,
+    /// "stage", "iteration", "progress", "end" or "problem".
+    pub event: String,
+    /// JSON: a `JobProgress`; with "end" a `JobView`, with "problem" a `Problem`.
+    pub data: String,
+}
 
 /// A stream on its way.
 struct Following {
@@ -37,10 +61,10 @@ struct Following {
     get, path = "/v1/jobs/{id}/events", tag = "jobs",
     params(
         ("id" = String, Path, description = "Job"),
-        ("Last-Event-ID" = Option<u32>, Header, description = "Number of the last event that was received")
+        LastEvent
     ),
     responses(
-        (status = 200, description = "Events", content_type = "text/event-stream", body = String), Missing, AnyProblem
+        (status = 200, description = "Events", content_type = "text/event-stream", body = SentEvent), Missing, AnyProblem
     )
 )]
 pub async fn events(
@@ -50,11 +74,13 @@ pub async fn events(
     headers: HeaderMap,
 ) -> Result<Sse<impl Stream<Item = Result<Event, Infallible>>>, Problem> {
     find(&app, &owner, &id).await?;
-    let last = match headers.get("last-event-id").map(|v| v.to_str().ok().and_then(|t| t.parse::<u32>().ok()))
-    {
+    let number = |text: &str| text.parse::<i64>().ok().filter(|n| *n >= 0);
+    let last = match headers.get("last-event-id").map(|v| v.to_str().ok().and_then(number)) {
         None => 0,
-        Some(Some(last)) => i64::from(last),
-        Some(None) => return Err(Problem::unreadable("The header Last-Event-ID must be a number.")),
+        Some(Some(last)) => last,
+        Some(None) => {
+            return Err(Problem::unreadable("The header Last-Event-ID must be a number, 0 or more."));
+        }
     };
     let following = Following { app, owner, id, last, waiting: VecDeque::new(), told: None, over: false };
     let stream = futures(following);

@@ -18,18 +18,66 @@ impl<S: Send + Sync> FromRequest<S> for Body {
     type Rejection = Problem;
 
     async fn from_request(request: Request, state: &S) -> Result<Self, Problem> {
-        let kind = request.headers().get(header::CONTENT_TYPE).and_then(|v| v.to_str().ok()).unwrap_or("");
-        let media = kind.split(';').next().unwrap_or("").trim().to_ascii_lowercase();
-        if media != "application/json" {
-            let problem = Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "not-json", "The body is no JSON");
-            return Err(problem.detail("Send it with Content-Type: application/json."));
+        if media_type(&request) != "application/json" {
+            return Err(wrong_type("Send it with Content-Type: application/json."));
         }
-        let bytes = Bytes::from_request(request, state).await.map_err(|e| too_large(&e))?;
-        match serde_json::from_slice(&bytes) {
-            Ok(Value::Object(fields)) => Ok(Self(fields)),
-            Ok(_) => Err(Problem::unreadable("The body must be a JSON object.")),
-            Err(e) => Err(Problem::unreadable(format!("The body is no JSON: {e}."))),
+        object(request, state).await.map(Self)
+    }
+}
+
+/// An object with a study: JSON, or the study alone as TOML. A kind may stand in the query.
+pub struct StudyBody(pub Map<String, Value>);
+
+/// What the query may add to a body.
+#[derive(serde::Deserialize)]
+struct KindQuery {
+    kind: Option<String>,
+}
+
+impl<S: Send + Sync> FromRequest<S> for StudyBody {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, state: &S) -> Result<Self, Problem> {
+        let (mut parts, body) = request.into_parts();
+        let Query(KindQuery { kind }) = Query::from_request_parts(&mut parts, state).await?;
+        let request = Request::from_parts(parts, body);
+        let mut fields = match media_type(&request).as_str() {
+            "application/json" => object(request, state).await?,
+            "application/toml" => {
+                let bytes = Bytes::from_request(request, state).await.map_err(|e| too_large(&e))?;
+                let text = String::from_utf8(bytes.into());
+                let text = text.map_err(|_| Problem::unreadable("The body is no text in UTF-8."))?;
+                std::iter::once(("study".to_owned(), Value::String(text))).collect()
+            }
+            _ => return Err(wrong_type("Send it with Content-Type: application/json, or application/toml.")),
+        };
+        if let Some(kind) = kind {
+            if fields.contains_key("kind") {
+                let message = "stands in the query and in the body: give it once".to_owned();
+                return Err(Problem::mistakes(vec![FieldError { path: "kind".to_owned(), message }]));
+            }
+            fields.insert("kind".to_owned(), Value::String(kind));
         }
+        Ok(Self(fields))
+    }
+}
+
+fn media_type(request: &Request) -> String {
+    let kind = request.headers().get(header::CONTENT_TYPE).and_then(|v| v.to_str().ok()).unwrap_or("");
+    kind.split(';').next().unwrap_or("").trim().to_ascii_lowercase()
+}
+
+fn wrong_type(words: &str) -> Problem {
+    Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "wrong-media-type", "The body is of another type")
+        .detail(words)
+}
+
+async fn object<S: Send + Sync>(request: Request, state: &S) -> Result<Map<String, Value>, Problem> {
+    let bytes = Bytes::from_request(request, state).await.map_err(|e| too_large(&e))?;
+    match serde_json::from_slice(&bytes) {
+        Ok(Value::Object(fields)) => Ok(fields),
+        Ok(_) => Err(Problem::unreadable("The body must be a JSON object.")),
+        Err(e) => Err(Problem::unreadable(format!("The body is no JSON: {e}."))),
     }
 }
 

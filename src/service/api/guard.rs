@@ -47,7 +47,7 @@ impl Guard {
         if !self.keys {
             return Ok(Owner { id: "local".to_owned(), remote });
         }
-        let problem = |title: &str| {
+        let problem = |title: &'static str| {
             Problem::new(StatusCode::UNAUTHORIZED, "no-valid-key", title)
                 .detail("Send a key as Authorization: Bearer KEY; 'stribeck key create NAME' makes one.")
         };
@@ -61,7 +61,8 @@ impl Guard {
     fn in_rate(&self, who: &str) -> Result<(), Problem> {
         let Some(limiter) = &self.limiter else { return Ok(()) };
         let Err(early) = limiter.check_key(&who.to_owned()) else { return Ok(()) };
-        let seconds = early.wait_time_from(DefaultClock::default().now()).as_secs() + 1;
+        let wait = early.wait_time_from(DefaultClock::default().now());
+        let seconds = u32::try_from(wait.as_secs() + 1).unwrap_or(u32::MAX);
         let problem = Problem::new(StatusCode::TOO_MANY_REQUESTS, "too-many-requests", "Too many requests");
         Err(problem.detail("Ask less often; a batch submits many jobs at once.").retry_after(seconds))
     }

@@ -121,7 +121,7 @@ impl From<Problem> for Refusal {
             404 | 422 | 400 | 415 => StatusCode::BAD_REQUEST,
             other => StatusCode::from_u16(other).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR),
         };
-        let message = problem.detail.unwrap_or(problem.title);
+        let message = problem.detail.unwrap_or_else(|| problem.title.to_owned());
         Self(status, BridgeError { error: BridgeErrorBody { kind: kind.to_owned(), message } })
     }
 }

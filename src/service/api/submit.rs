@@ -1,7 +1,7 @@
 //! Jobs in: one or many, each checked completely before anything is kept.
 
 use super::App;
-use super::extract::{Body, Fields};
+use super::extract::{Body, Fields, StudyBody};
 use super::guard::Owner;
 use super::problem::{AnyProblem, BodyProblem, FieldError, Problem};
 use super::view::JobView;
@@ -16,7 +16,7 @@ use axum::{Extension, Json};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
-use utoipa::ToSchema;
+use utoipa::{IntoParams, ToSchema};
 
 /// A job to submit.
 #[derive(Debug, Serialize, Deserialize, ToSchema)]
@@ -38,6 +38,16 @@ pub enum StudyForm {
     Object(Map<String, Value>),
     /// TOML.
     Toml(String),
+}
+
+/// Where a kind may stand beside a study in TOML.
+#[derive(IntoParams)]
+#[into_params(parameter_in = Query)]
+#[expect(dead_code, reason = "describes a parameter; none is made of it")]
+pub struct KindParameter {
+    /// What to do with the study, where the body does not say it.
+    #[param(nullable = false)]
+    kind: Option<JobKind>,
 }
 
 /// Jobs to submit.
@@ -114,8 +124,9 @@ async fn has_room(app: &App, owner: &Owner, more: usize) -> Result<(), Problem> 
 
 /// Submits a job.
 #[utoipa::path(
-    post, path = "/v1/jobs", tag = "jobs", request_body = Submission,
-    params(("Idempotency-Key" = Option<String>, Header, description = "A word of your own, at most 200 visible characters: the same \
+    post, path = "/v1/jobs", tag = "jobs",
+    request_body(content((Submission = "application/json"), (String = "application/toml"))),
+    params(KindParameter, ("Idempotency-Key" = Option<String>, Header, description = "A word of your own, at most 200 visible characters: the same \
         request sent again with it is answered with the job it made the first time", max_length = 200, pattern = "^[!-~]+$")),
     responses(
         (status = 202, description = "It waits for a worker", body = JobView,
@@ -130,7 +141,7 @@ pub async fn submit(
     State(app): State<App>,
     Extension(owner): Extension<Owner>,
     headers: HeaderMap,
-    Body(given): Body,
+    StudyBody(given): StudyBody,
 ) -> Result<Response, Problem> {
     let key = idempotency_key(&headers)?;
     let job = checked(given, "", &app.limits).map_err(Problem::mistakes)?;

@@ -88,13 +88,17 @@ function askKey(wrong) {
     const field = document.getElementById("key-field");
     document.getElementById("key-wrong").hidden = !wrong;
     field.value = dialog.returnValue = "";
-    dialog.addEventListener("close", () => {
-      asking = null;
-      const key = dialog.returnValue === "use" ? field.value.trim() : "";
-      if (key) store.set(key);
-      showKey();
-      resolve(Boolean(key));
-    }, { once: true });
+    dialog.addEventListener(
+      "close",
+      () => {
+        asking = null;
+        const key = dialog.returnValue === "use" ? field.value.trim() : "";
+        if (key) store.set(key);
+        showKey();
+        resolve(Boolean(key));
+      },
+      { once: true },
+    );
     dialog.showModal();
   });
   return asking;
@@ -157,13 +161,26 @@ export function releaseUrls() {
 
 /** A message about what went wrong, with a way to try again. */
 export function problemBox(error, retry) {
-  const { title, detail, errors = [], retry_after_s: wait } = error instanceof Problem ? error.document : { title: "This page failed", detail: String(error) };
-  return h("div", { class: "problem", role: "alert" },
+  const {
+    title,
+    detail,
+    errors = [],
+    retry_after_s: wait,
+  } = error instanceof Problem ? error.document : { title: "This page failed", detail: String(error) };
+  return h(
+    "div",
+    { class: "problem", role: "alert" },
     h("p", {}, h("strong", {}, nice(title))),
     detail && h("p", {}, nice(detail)),
-    errors.length > 0 && h("ul", {}, errors.map((e) => h("li", {}, h("code", {}, e.path), ": ", nice(e.message)))),
+    errors.length > 0 &&
+      h(
+        "ul",
+        {},
+        errors.map((e) => h("li", {}, h("code", {}, e.path), ": ", nice(e.message))),
+      ),
     wait && h("p", {}, `Try again in ${span(wait)}.`),
-    retry && h("p", {}, h("button", { type: "button", onclick: retry }, "Try again")));
+    retry && h("p", {}, h("button", { type: "button", onclick: retry }, "Try again")),
+  );
 }
 
 /** A place that fills itself: says that it loads, then shows what came or what went wrong. */

@@ -39,7 +39,15 @@ function makeNode(root, schema, value, place) {
 // Quantities are shown with "µm" and "°C" and sent as the study file has them, so that equal studies have equal hashes.
 const isQuantity = (text) => /^\s*[-+.]?\d/.test(text);
 const shownText = (text) => (isQuantity(text) ? nice(text) : text);
-const sentText = (text) => (isQuantity(text) ? text.replace(/[µμ](?=[ms])/g, "u").replace("°", "deg").replaceAll("²", "2").replaceAll("³", "3") : text).trim();
+const sentText = (text) =>
+  (isQuantity(text)
+    ? text
+        .replace(/[µμ](?=[ms])/g, "u")
+        .replace("°", "deg")
+        .replaceAll("²", "2")
+        .replaceAll("³", "3")
+    : text
+  ).trim();
 const numberOf = (text) => (text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : text.trim());
 
 /** Lines of text as a list; rows of a table are parted by commas, semicolons or tabs. */
@@ -50,7 +58,8 @@ function readLines(text, item) {
   return lines.map(one);
 }
 
-const showLines = (value) => (value ?? []).map((line) => (Array.isArray(line) ? line.join(", ") : typeof line === "string" ? shownText(line) : line)).join("\n");
+const showLines = (value) =>
+  (value ?? []).map((line) => (Array.isArray(line) ? line.join(", ") : typeof line === "string" ? shownText(line) : line)).join("\n");
 
 function freeValue(text) {
   try {
@@ -82,7 +91,9 @@ function control(root, schema, value, attributes) {
   const numeric = schema.type === "number" || schema.type === "integer";
   const shown = value === undefined || value === null ? "" : typeof value === "string" ? shownText(value) : JSON.stringify(value);
   const long = schema.type === "string" && !schema.pattern && shown.length > 40;
-  const element = long ? h("textarea", { rows: 2, ...attributes }) : h("input", { type: "text", inputmode: numeric ? "decimal" : null, spellcheck: "false", ...attributes });
+  const element = long
+    ? h("textarea", { rows: 2, ...attributes })
+    : h("input", { type: "text", inputmode: numeric ? "decimal" : null, spellcheck: "false", ...attributes });
   element.value = shown;
   const read = numeric ? numberOf : schema.type === "string" ? sentText : freeValue;
   return [element, () => (element.value.trim() === "" ? undefined : read(element.value))];
@@ -92,7 +103,8 @@ function helpOf(root, schema) {
   const parts = [];
   if (schema.description) parts.push(nice(schema.description));
   if (schema.units) parts.push(`Unit: ${nice(schema.units)}.`);
-  if (kindOf(root, schema) === "lines") parts.push(resolve(root, schema.items).type === "array" ? "One row a line, values parted by commas." : "One value a line.");
+  if (kindOf(root, schema) === "lines")
+    parts.push(resolve(root, schema.items).type === "array" ? "One row a line, values parted by commas." : "One value a line.");
   return parts.join(" ");
 }
 
@@ -108,8 +120,14 @@ export function leafNode(root, schema, value, place) {
   tell();
   input.addEventListener("change", tell);
   const name = h("label", { for: id }, place.name, place.required && h("span", { class: "faint" }, " (needed)"));
-  const element = h("div", { class: `field ${input.type ?? ""}` }, h("div", { class: "name" }, name, place.remove),
-    input, error, h("p", { class: "help", id: described }, h("span", {}, help, " "), chosen));
+  const element = h(
+    "div",
+    { class: `field ${input.type ?? ""}` },
+    h("div", { class: "name" }, name, place.remove),
+    input,
+    error,
+    h("p", { class: "help", id: described }, h("span", {}, help, " "), chosen),
+  );
   const show = (text) => {
     error.textContent = nice(text);
     error.hidden = !text;
@@ -127,8 +145,15 @@ function frame(place, help, ...content) {
   const id = nextId();
   const error = h("p", { class: "error", id: `${id}-error`, hidden: true });
   const heading = h(`h${Math.min(6, place.level)}`, { tabindex: "-1" }, place.name);
-  const element = h("fieldset", { "aria-describedby": help ? `${id}-help` : null }, h("legend", {}, heading), place.remove,
-    help && h("p", { class: "help", id: `${id}-help` }, nice(help)), error, content);
+  const element = h(
+    "fieldset",
+    { "aria-describedby": help ? `${id}-help` : null },
+    h("legend", {}, heading),
+    place.remove,
+    help && h("p", { class: "help", id: `${id}-help` }, nice(help)),
+    error,
+    content,
+  );
   const show = (text) => {
     error.textContent = nice(text);
     error.hidden = !text;
@@ -139,7 +164,11 @@ function frame(place, help, ...content) {
 }
 
 function removeButton(name, act) {
-  return h("button", { type: "button", class: "remove", "aria-label": `Remove ${lower(name)}`, title: `Remove ${lower(name)}`, onclick: act }, "×");
+  return h(
+    "button",
+    { type: "button", class: "remove", "aria-label": `Remove ${lower(name)}`, title: `Remove ${lower(name)}`, onclick: act },
+    "×",
+  );
 }
 
 /** Finds the part of a path among children by their keys; the longest wins, for keys may hold dots. */
@@ -159,9 +188,16 @@ function offers(root, schema, place, has, add) {
     const absent = Object.keys(schema.properties).filter((key) => !has(key) && !isFixed(schema, key));
     element.hidden = absent.length === 0;
     summary.textContent = place.level === 1 ? `Add a section (${absent.length})` : `Add to “${place.name}” (${absent.length})`;
-    more.replaceChildren(...absent.map((key) => h("li", {},
-      h("button", { type: "button", "data-key": key, onclick: () => add(key) }, `+ ${label(key)}`),
-      h("span", { class: "help" }, nice(resolve(root, schema.properties[key]).description ?? "")))));
+    more.replaceChildren(
+      ...absent.map((key) =>
+        h(
+          "li",
+          {},
+          h("button", { type: "button", "data-key": key, onclick: () => add(key) }, `+ ${label(key)}`),
+          h("span", { class: "help" }, nice(resolve(root, schema.properties[key]).description ?? "")),
+        ),
+      ),
+    );
   };
   const focus = (key) => {
     const button = key && more.querySelector(`[data-key="${CSS.escape(key)}"]`);
@@ -238,7 +274,17 @@ function itemsNode(place, help, entry, fresh) {
   const nodes = [];
   const items = h("div", { class: "items" });
   const one = lower(singular(place.name));
-  const add = h("button", { type: "button", onclick: () => { put(fresh()).focus(); say(`${one} added.`); } }, `+ Add ${/^[aeiou]/.test(one) ? "an" : "a"} ${one}`);
+  const add = h(
+    "button",
+    {
+      type: "button",
+      onclick: () => {
+        put(fresh()).focus();
+        say(`${one} added.`);
+      },
+    },
+    `+ Add ${/^[aeiou]/.test(one) ? "an" : "a"} ${one}`,
+  );
   const { element, show } = frame(place, help, items, h("p", {}, add));
   const number = () => nodes.forEach((node, k) => node.number?.(k));
   const put = (value) => {
@@ -261,8 +307,14 @@ function itemsNode(place, help, entry, fresh) {
 function listNode(root, schema, value, place) {
   const name = singular(place.name);
   const entry = (one, remove, k) => {
-    const node = groupNode(root, { ...resolve(root, schema.items), description: "" }, one, { name: `${name} ${k + 1}`, remove, level: place.level + 1 });
-    node.number = (at) => { node.element.querySelector("legend > *").textContent = node.name = `${name} ${at + 1}`; };
+    const node = groupNode(root, { ...resolve(root, schema.items), description: "" }, one, {
+      name: `${name} ${k + 1}`,
+      remove,
+      level: place.level + 1,
+    });
+    node.number = (at) => {
+      node.element.querySelector("legend > *").textContent = node.name = `${name} ${at + 1}`;
+    };
     return node;
   };
   const node = itemsNode(place, schema.description, entry, () => startOf(root, schema.items));
@@ -286,9 +338,15 @@ function mapNode(root, schema, value, place) {
     const at = { name: title(), remove, level: place.level + 1 };
     const node = makeNode(root, { ...inner, description: "" }, one, simple ? { name: "Value" } : { ...at, front });
     const outer = simple ? frame(at, "", h("div", { class: "fields" }, front, node.element)) : node;
-    input.addEventListener("input", () => { outer.heading.textContent = title(); });
+    input.addEventListener("input", () => {
+      outer.heading.textContent = title();
+    });
     const within = node.focus;
-    return Object.assign(node, { element: outer.element, key: () => input.value.trim(), focus: (rest) => (rest ? within(rest) : input.focus()) });
+    return Object.assign(node, {
+      element: outer.element,
+      key: () => input.value.trim(),
+      focus: (rest) => (rest ? within(rest) : input.focus()),
+    });
   };
   const node = itemsNode(place, schema.description, entry, () => Object.entries(startOf(root, schema))[0]);
   for (const one of Object.entries(value ?? {})) node.put(one);
@@ -317,10 +375,11 @@ export function tomlLines(text) {
   const lines = new Map();
   const last = new Map();
   let table = "";
-  const place = (parts) => parts.reduce((path, part) => {
-    const key = join(path, part);
-    return last.has(key) ? `${key}[${last.get(key)}]` : key;
-  }, "");
+  const place = (parts) =>
+    parts.reduce((path, part) => {
+      const key = join(path, part);
+      return last.has(key) ? `${key}[${last.get(key)}]` : key;
+    }, "");
   text.split("\n").forEach((line, k) => {
     const [, brackets, header] = HEADER.exec(line) ?? [];
     const pair = header === undefined && PAIR.exec(line);
@@ -351,7 +410,10 @@ const tomlKey = (key) => (/^[\w-]+$/.test(key) ? key : JSON.stringify(key));
 
 function tomlValue(value) {
   if (Array.isArray(value)) return `[${value.map(tomlValue).join(", ")}]`;
-  if (isTable(value)) return `{ ${Object.entries(value).map(([key, one]) => `${tomlKey(key)} = ${tomlValue(one)}`).join(", ")} }`;
+  if (isTable(value))
+    return `{ ${Object.entries(value)
+      .map(([key, one]) => `${tomlKey(key)} = ${tomlValue(one)}`)
+      .join(", ")} }`;
   return JSON.stringify(value);
 }
 
@@ -359,10 +421,12 @@ function tomlValue(value) {
 export function toToml(table, path = "") {
   const entries = Object.entries(table);
   const lines = entries.filter(([, one]) => !isTable(one) && !isTables(one)).map(([key, one]) => `${tomlKey(key)} = ${tomlValue(one)}\n`);
-  const tables = entries.filter(([, one]) => isTable(one) || isTables(one)).map(([key, one]) => {
-    const name = join(path, tomlKey(key));
-    if (isTables(one)) return one.map((item) => `\n[[${name}]]\n${toToml(item, name)}`).join("");
-    return `\n[${name}]\n${toToml(one, name)}`;
-  });
+  const tables = entries
+    .filter(([, one]) => isTable(one) || isTables(one))
+    .map(([key, one]) => {
+      const name = join(path, tomlKey(key));
+      if (isTables(one)) return one.map((item) => `\n[[${name}]]\n${toToml(item, name)}`).join("");
+      return `\n[${name}]\n${toToml(one, name)}`;
+    });
   return lines.join("") + tables.join("");
 }

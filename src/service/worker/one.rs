@@ -2,7 +2,7 @@
 
 use super::progress::{Teller, write};
 use crate::optimise::EvaluationError;
-use crate::report::ReportFile;
+use crate::report::{ReportFile, plain_page};
 use crate::run::{Cancel, RunContext, Store as Checkpoints};
 use crate::service::job::{JobKind, JobState};
 use crate::service::store::{Claim, Ending, Fence, Store};
@@ -146,8 +146,8 @@ type Found = Result<(String, bool, Vec<ReportFile>), (&'static str, String)>;
 fn compute(study: &Study, kind: JobKind, context: RunContext<'_>, store: &dyn Checkpoints) -> Found {
     let Some(task) = kind.task() else {
         let text = serde_json::to_string_pretty(&study.to_json()).unwrap_or_default() + "\n";
-        let file = ReportFile { name: "report.json".to_owned(), text };
-        return Ok(("complete".to_owned(), false, vec![file]));
+        let files = vec![ReportFile { name: "report.json".to_owned(), text }];
+        return with_page(study, files).map(|files| ("complete".to_owned(), false, files));
     };
     let found = match answer(study, task, context, store) {
         Ok(found) => found,
@@ -160,7 +160,18 @@ fn compute(study: &Study, kind: JobKind, context: RunContext<'_>, store: &dyn Ch
         files.push(ReportFile { name: "study.toml".to_owned(), text });
     }
     files.extend(found.plots());
-    Ok((found.status(), found.is_cancelled(), files))
+    with_page(study, files).map(|files| (found.status(), found.is_cancelled(), files))
+}
+
+/// Files with a page, if they have none.
+fn with_page(study: &Study, mut files: Vec<ReportFile>) -> Result<Vec<ReportFile>, (&'static str, String)> {
+    if files.iter().all(|f| f.name != "report.html") {
+        let title = study.file.title.value().map_or("", String::as_str);
+        let text = files.iter().find(|f| f.name == "report.json").map_or("", |f| f.text.as_str());
+        let text = plain_page(title, text).map_err(|e| ("report-failed", e.to_string()))?;
+        files.push(ReportFile { name: "report.html".to_owned(), text });
+    }
+    Ok(files)
 }
 
 /// How a job ends; none if it goes on elsewhere.

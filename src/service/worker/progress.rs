@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender};
 
 /// Writes of the progress of one job come no faster.
-const PACE: Duration = Duration::from_millis(400);
+const PACE: Duration = Duration::from_millis(300);
 /// Events of one job that are kept; a computation that tells more tells it to nobody.
 const MOST_EVENTS: usize = 5000;
 
@@ -102,8 +102,9 @@ impl Progress for Teller {
 /// The end that writes, until the computation has told all.
 pub(super) async fn write(store: Store, fence: Fence, mut from: UnboundedReceiver<News>) {
     while let Some(first) = from.recv().await {
-        let mut news = vec![first];
-        while let Ok(next) = from.try_recv() {
+        let (mut news, until) = (vec![first], tokio::time::Instant::now() + PACE);
+        // What comes within the pace is written together; the end of a job waits for nothing.
+        while let Ok(Some(next)) = tokio::time::timeout_at(until, from.recv()).await {
             news.push(next);
         }
         let events: Vec<NewEvent> = news.iter_mut().filter_map(|n| n.event.take()).collect();
@@ -116,9 +117,6 @@ pub(super) async fn write(store: Store, fence: Fence, mut from: UnboundedReceive
             && let Err(e) = store.tell(&fence, &last.progress).await
         {
             tracing::warn!(job = fence.id, "its progress was not kept: {e}");
-        }
-        if !from.is_closed() {
-            tokio::time::sleep(PACE).await;
         }
     }
 }
