@@ -32,17 +32,17 @@ pub(super) struct LogArguments {
     #[arg(long, value_enum, default_value = "text")]
     log_format: LogFormat,
     /// What is logged: error, warn, info, debug, or a filter like info,tower_http=debug.
-    #[arg(long, default_value = "info")]
+    #[arg(long, default_value = "info", value_parser = filter)]
     log: String,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct SlotArguments {
     /// Jobs at a time.
-    #[arg(long, default_value_t = 2)]
-    slots: usize,
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u16).range(..=256))]
+    slots: u16,
     /// Seconds a job may take.
-    #[arg(long, default_value_t = 3600, value_name = "SECONDS")]
+    #[arg(long, default_value_t = 3600, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..))]
     wall_time: u64,
     /// Seconds after which a job of a worker that is not heard of goes to another.
     #[arg(long, default_value_t = 15, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..))]
@@ -52,7 +52,7 @@ pub(super) struct SlotArguments {
 #[derive(Debug, Args)]
 pub(super) struct ServeArguments {
     /// Where to listen. Beyond this machine only with keys.
-    #[arg(long, default_value = "127.0.0.1:8080")]
+    #[arg(long, default_value = "127.0.0.1:8080", value_parser = address)]
     address: SocketAddr,
     #[command(flatten)]
     database: DatabaseArguments,
@@ -68,7 +68,7 @@ pub(super) struct ServeArguments {
     #[arg(long, value_name = "COUNT")]
     rate: Option<u32>,
     /// Jobs of one key that may wait or run.
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
     open_jobs: Option<u32>,
     #[command(flatten)]
     log: LogArguments,
@@ -97,6 +97,7 @@ enum KeyCommand {
     /// Makes a key and prints it, once.
     Create {
         /// Whose it is.
+        #[arg(value_parser = key_name)]
         name: String,
     },
     /// Lists keys by id.
@@ -117,7 +118,7 @@ enum KeyCommand {
 impl SlotArguments {
     fn options(&self) -> WorkerOptions {
         WorkerOptions {
-            slots: self.slots,
+            slots: usize::from(self.slots),
             lease: Duration::from_secs(self.lease),
             wall_time: Duration::from_secs(self.wall_time),
             ..WorkerOptions::default()
@@ -127,7 +128,7 @@ impl SlotArguments {
 
 impl LogArguments {
     fn start(&self) {
-        let filter = EnvFilter::try_new(&self.log).unwrap_or_else(|_| EnvFilter::new("info"));
+        let filter = EnvFilter::new(&self.log);
         let colours = std::io::IsTerminal::is_terminal(&std::io::stderr());
         let log =
             tracing_subscriber::fmt().with_env_filter(filter).with_ansi(colours).with_writer(std::io::stderr);
@@ -136,6 +137,34 @@ impl LogArguments {
             LogFormat::Json => log.json().init(),
         }
     }
+}
+
+/// A filter of the log.
+fn filter(text: &str) -> Result<String, String> {
+    let word = |w: &str| ["off", "error", "warn", "info", "debug", "trace"].contains(&w);
+    let all = text.split(',').all(|part| match part.split_once('=') {
+        Some((target, level)) => !target.is_empty() && word(level),
+        None => word(part),
+    });
+    if all {
+        Ok(text.to_owned())
+    } else {
+        Err("give error, warn, info or debug, or a filter like info,tower_http=debug".to_owned())
+    }
+}
+
+/// The name of a key.
+fn key_name(text: &str) -> Result<String, String> {
+    let fits = (1..=100).contains(&text.chars().count()) && !text.chars().any(char::is_control);
+    if fits { Ok(text.to_owned()) } else { Err("give 1 to 100 visible characters".to_owned()) }
+}
+
+/// An address with its port, by number or by name.
+fn address(text: &str) -> Result<SocketAddr, String> {
+    use std::net::ToSocketAddrs;
+    let words = |e: std::io::Error| format!("{e}; give one like 127.0.0.1:8080");
+    let mut found = text.to_socket_addrs().map_err(words)?;
+    found.next().ok_or_else(|| "names no machine".to_owned())
 }
 
 /// Runs something asynchronous to its end.
@@ -188,24 +217,31 @@ pub(super) fn run_worker(a: &WorkerArguments) -> u8 {
 }
 
 pub(super) fn run_keys(a: &KeyArguments) -> u8 {
-    code(wait(async {
+    let mut missing = false;
+    let found = wait(async {
         let store = Store::open(&a.database.database).await?;
         let found = keys(&store, &a.command).await;
         store.close().await;
-        match found {
-            Ok(text) => print!("{text}"),
-            Err(e) => return Err(e.into()),
+        match found? {
+            Some(text) => print!("{text}"),
+            None => missing = true,
         }
         Ok(())
-    }))
+    });
+    if missing {
+        eprintln!("error: there is no valid key of this id; 'stribeck key list' tells which there are");
+        return super::EXIT_STUDY;
+    }
+    code(found)
 }
 
-async fn keys(store: &Store, command: &KeyCommand) -> Result<String, StoreError> {
+/// What a command tells; none if its key does not exist.
+async fn keys(store: &Store, command: &KeyCommand) -> Result<Option<String>, StoreError> {
     let time = |ms: i64| jiff::Timestamp::from_millisecond(ms).map(|t| t.to_string()).unwrap_or_default();
     match command {
         KeyCommand::Create { name } => {
             let key = store.new_key(name).await?;
-            Ok(format!("{}\n", key.secret))
+            Ok(Some(format!("{}\n", key.secret)))
         }
         KeyCommand::List => {
             let row = |k: crate::service::store::KeyRow| {
@@ -213,17 +249,17 @@ async fn keys(store: &Store, command: &KeyCommand) -> Result<String, StoreError>
                     k.revoked_ms.map_or_else(|| "valid".to_owned(), |ms| format!("revoked {}", time(ms)));
                 format!("{}  {}  {state}  {}\n", k.id, time(k.created_ms), k.name)
             };
-            Ok(store.keys().await?.into_iter().map(row).collect())
+            Ok(Some(store.keys().await?.into_iter().map(row).collect()))
         }
         KeyCommand::Revoke { id } => {
             let done = store.revoke_key(id).await?;
-            Ok(if done { format!("revoked {id}\n") } else { format!("there is no valid key {id}\n") })
+            Ok(done.then(|| format!("revoked {id}\n")))
         }
         KeyCommand::Log { last } => {
             let row = |(ms, owner, action, job): (i64, String, String, Option<String>)| {
                 format!("{}  {owner}  {action}  {}\n", time(ms), job.unwrap_or_default())
             };
-            Ok(store.audited(i64::from(*last)).await?.into_iter().map(row).collect())
+            Ok(Some(store.audited(i64::from(*last)).await?.into_iter().map(row).collect()))
         }
     }
 }

@@ -13,6 +13,8 @@ pub struct Limits {
     pub steps: usize,
     /// Cycles until an orbit must have settled.
     pub cycles: usize,
+    /// Memory for the recording of a cycle, bytes.
+    pub memory_bytes: usize,
     /// Design parameters.
     pub parameters: usize,
     /// Bearings times operating points.
@@ -36,6 +38,7 @@ impl Default for Limits {
             cells: 40_000,
             steps: 7200,
             cycles: 1000,
+            memory_bytes: 1_000_000_000,
             parameters: 1000,
             cases: 64,
             open_jobs: 20_000,
@@ -60,6 +63,13 @@ impl Limits {
         most(cells(study), self.cells, "film.cells_around", "cells");
         most(study.orbit.steps, self.steps, "orbit.steps_per_cycle", "steps per cycle");
         most(study.orbit.max_cycles, self.cycles, "orbit.max_cycles", "cycles");
+        let megabytes = |bytes: usize| bytes / 1_000_000;
+        most(
+            megabytes(study.orbit.memory_bytes),
+            megabytes(self.memory_bytes),
+            "orbit.memory",
+            "MB of memory",
+        );
         most(study.parameters.len(), self.parameters, "parameters", "parameters");
         let cases = study.bearings.len() * study.points.len().max(1);
         most(cases, self.cases, "objective.operating_points", "bearings times operating points");

@@ -14,6 +14,7 @@
 pub mod api;
 mod job;
 mod limits;
+mod listen;
 pub mod store;
 mod worker;
 
@@ -25,15 +26,12 @@ pub use worker::{WorkerOptions, work};
 use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
 use std::net::SocketAddr;
 use std::sync::{Arc, OnceLock};
-use std::time::Duration;
 use store::{Store, StoreError};
 use thiserror::Error;
 use tokio::sync::{Notify, Semaphore, watch};
 
 /// Requests that may compute at the same time.
 const DIRECT: usize = 2;
-/// How long open requests may go on when the service stops.
-const FAREWELL: Duration = Duration::from_secs(5);
 
 /// Why the service does not run.
 #[derive(Debug, Error)]
@@ -111,22 +109,16 @@ pub async fn serve(options: ServeOptions, ready: impl FnOnce(SocketAddr)) -> Res
     let (stop, stopped) = watch::channel(false);
     let workers = (options.workers.slots > 0)
         .then(|| tokio::spawn(work(store.clone(), options.workers, app.wake.clone(), stopped.clone())));
-    let service = router(app).into_make_service_with_connect_info::<SocketAddr>();
     tracing::info!(%address, keys, slots = options.workers.slots, "serving");
     ready(address);
-    let mut waiting = stopped.clone();
-    let server = axum::serve(listener, service).with_graceful_shutdown(async move {
-        let _ = waiting.wait_for(|stop| *stop).await;
-    });
-    let server = tokio::spawn(async move { server.await });
+    let server = tokio::spawn(listen::listen(listener, router(app), stopped));
     asked_to_stop().await;
     tracing::info!("stopping: jobs are handed back");
     let _ = stop.send(true);
     if let Some(workers) = workers {
         let _ = workers.await;
     }
-    // Streams of events would keep it open.
-    let _ = tokio::time::timeout(FAREWELL, server).await;
+    let _ = server.await;
     store.close().await;
     Ok(())
 }

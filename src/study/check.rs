@@ -127,6 +127,11 @@ impl Study {
         study
     }
 
+    /// Whether a design is searched; otherwise the study asks for a table, or a comparison of gradient engines.
+    pub fn searches(&self) -> bool {
+        !self.points.is_empty() && self.comparison.is_none()
+    }
+
     /// Whether a running-in design is searched.
     pub fn runs_in(&self) -> bool {
         self.running_in.as_ref().is_some_and(|r| r.minimise.is_some())

@@ -86,7 +86,8 @@ fn the_page_works_in_a_browser() {
     let list = shown(&chromium, &service, "jobs", None);
     assert_eq!(list.matches(&format!("#/jobs/{a}")).count().min(1), 1, "{list}");
     let job = shown(&chromium, &service, &format!("jobs/{a}"), None);
-    for words in [format!("{loss:.0} W"), "converged".to_owned(), "blob:".to_owned(), "orbit.csv".to_owned()]
+    for words in
+        [format!("{loss:.0}&nbsp;W"), "converged".to_owned(), "blob:".to_owned(), "orbit.csv".to_owned()]
     {
         assert!(job.contains(&words), "{words} in {job}");
     }

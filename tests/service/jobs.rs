@@ -140,6 +140,17 @@ fn a_repeated_request_makes_no_second_job() {
     assert_ne!(send("a-2", &check_job()).ok(202)["id"], first["id"]);
     send("with blanks", &check_job()).problem(400, "unreadable");
     assert_eq!(service.get("/v1/jobs").ok(200)["jobs"].as_array().unwrap().len(), 2);
+    let batch = |key: &str, jobs: &[Value]| {
+        let headers = [("content-type", "application/json"), ("idempotency-key", key)];
+        service.send("POST", "/v1/jobs/batch", &headers, json!({ "jobs": jobs }).to_string().as_bytes())
+    };
+    let ids = |found: Value| -> Vec<Value> {
+        found["jobs"].as_array().unwrap().iter().map(|j| j["id"].clone()).collect()
+    };
+    let first = ids(batch("b", &[check_job(), other.clone()]).ok(202));
+    assert_eq!(ids(batch("b", &[check_job(), other.clone()]).ok(202)), first);
+    batch("b", &[other, check_job()]).problem(409, "idempotency-key-reused");
+    assert_eq!(service.get("/v1/jobs").ok(200)["jobs"].as_array().unwrap().len(), 4);
 }
 
 #[test]

@@ -38,6 +38,22 @@ fn all_mistakes_of_a_study_are_told_at_once_with_their_paths() {
     // What does not suit the study.
     let body = json!({ "kind": "running-in", "study": tiny() });
     assert_eq!(paths(&service.post("/v1/jobs", &body).problem(422, "invalid-study")), ["kind"]);
+    let compares = tiny() + "\n[comparison]\nengines = [\"ADJ\", \"TRA\"]\n";
+    for kind in ["operational", "simulation"] {
+        let problem = service
+            .post("/v1/jobs", &json!({ "kind": kind, "study": compares }))
+            .problem(422, "invalid-study");
+        assert!(paths(&problem).contains(&"kind".to_owned()), "{problem}");
+    }
+    // No text has a NUL, and no database takes one.
+    let nul = tiny().replace("title = \"Big", "title = \"\\u0000Big");
+    assert_eq!(
+        paths(&service.post("/v1/jobs", &json!({ "study": nul })).problem(422, "invalid-study")),
+        ["study"]
+    );
+    let greedy = tiny().replace("[orbit]", "[orbit]\nmemory = \"500 GB\"");
+    let problem = service.post("/v1/jobs", &json!({ "study": greedy })).problem(422, "invalid-study");
+    assert_eq!(paths(&problem), ["study.orbit.memory"]);
     service.post("/v1/jobs", &json!({})).problem(422, "invalid-study");
     service.post("/v1/jobs", &json!({ "study": 7 })).problem(422, "invalid-study");
     assert_eq!(service.get("/v1/jobs").ok(200)["jobs"], json!([]));
@@ -67,7 +83,16 @@ fn requests_that_cannot_be_read_are_told_so() {
     service.get("/v1/jobs/none").problem(404, "not-found");
     service.get("/v1/jobs/%FF").problem(404, "not-found");
     service.send("PUT", "/v1/jobs", &json_type, b"{}").problem(405, "method-not-allowed");
-    for query in ["limit=0", "limit=201", "limit=x", "state=asleep", "kind=dance"] {
+    for query in [
+        "limit=0",
+        "limit=201",
+        "limit=x",
+        "state=asleep",
+        "kind=dance",
+        "knd=check",
+        "title=%00",
+        "after=zz",
+    ] {
         service.get(&format!("/v1/jobs?{query}")).problem(400, "unreadable");
     }
     let answer = service.get("/v1/jobs");

@@ -30,6 +30,7 @@ pub struct StudyBody(pub Map<String, Value>);
 
 /// What the query may add to a body.
 #[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 struct KindQuery {
     kind: Option<String>,
 }
@@ -100,7 +101,11 @@ impl<S: Send + Sync, T: DeserializeOwned> FromRequestParts<S> for Query<T> {
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Problem> {
         match axum::extract::Query::try_from_uri(&parts.uri) {
             Ok(axum::extract::Query(value)) => Ok(Self(value)),
-            Err(e) => Err(Problem::unreadable(format!("The query is wrong: {}.", e.body_text()))),
+            Err(e) => {
+                let text = e.body_text();
+                let words = text.strip_prefix("Failed to deserialize query string: ").unwrap_or(&text);
+                Err(Problem::unreadable(format!("The query is wrong: {words}.")))
+            }
         }
     }
 }
@@ -166,6 +171,10 @@ impl Fields {
         match read {
             Err(e) => {
                 self.errors.extend(of_study(&e.faults, &path));
+                None
+            }
+            Ok(study) if study.to_json().to_string().contains("\\u0000") => {
+                self.wrong("study", "contains a character NUL, which no text has: remove it");
                 None
             }
             Ok(study) => {

@@ -45,6 +45,13 @@ impl Guard {
 
     async fn owner(&self, headers: &HeaderMap, remote: Option<String>) -> Result<Owner, Problem> {
         if !self.keys {
+            if !names_this_machine(headers) {
+                let problem = Problem::new(StatusCode::FORBIDDEN, "wrong-host", "Not under this name");
+                return Err(problem.detail(
+                    "Without keys this service answers only to localhost and to addresses of this machine; ask for keys \
+                     with --keys to use another name.",
+                ));
+            }
             return Ok(Owner { id: "local".to_owned(), remote });
         }
         let problem = |title: &'static str| {
@@ -84,6 +91,17 @@ pub async fn guard(State(guard): State<Guard>, mut request: Request, next: Next)
     next.run(request).await
 }
 
+/// Whether a request without a key was meant for this machine: a page of somebody else's whose name was made to lead here was not.
+fn names_this_machine(headers: &HeaderMap) -> bool {
+    let Some(host) = headers.get(header::HOST) else { return true };
+    let host = host.to_str().unwrap_or("");
+    let name = match host.strip_prefix('[') {
+        Some(rest) => rest.split(']').next().unwrap_or(""),
+        None => host.rsplit_once(':').map_or(host, |(name, _)| name),
+    };
+    name.eq_ignore_ascii_case("localhost") || name.parse::<std::net::IpAddr>().is_ok()
+}
+
 fn secret(headers: &HeaderMap) -> Option<String> {
     let value = headers.get(header::AUTHORIZATION)?.to_str().ok()?;
     let (scheme, rest) = value.split_once(' ')?;
@@ -118,8 +136,24 @@ fn base64(text: &str) -> Option<Vec<u8>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{base64, secret};
+    use super::{base64, names_this_machine, secret};
     use axum::http::{HeaderMap, HeaderValue, header};
+
+    #[test]
+    fn without_keys_only_names_of_this_machine_are_answered() {
+        let of = |text: &'static str| {
+            let mut headers = HeaderMap::new();
+            headers.insert(header::HOST, HeaderValue::from_static(text));
+            names_this_machine(&headers)
+        };
+        assert!(names_this_machine(&HeaderMap::new()));
+        for host in ["localhost", "LOCALHOST:8080", "127.0.0.1:8080", "[::1]:8080", "10.0.0.7"] {
+            assert!(of(host), "{host}");
+        }
+        for host in ["evil.example", "localhost.evil.example:8080", "127.0.0.1.evil.example", ""] {
+            assert!(!of(host), "{host}");
+        }
+    }
 
     #[test]
     fn keys_are_read_from_both_forms() {

@@ -20,6 +20,7 @@ const LARGEST_PAGE: u16 = 200;
 /// Which jobs are wanted.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
 pub struct ListQuery {
     /// In this state.
     state: Option<JobState>,
@@ -28,6 +29,7 @@ pub struct ListQuery {
     /// With this text in their title; capitals do not count.
     title: Option<String>,
     /// `next` of the page before.
+    #[param(format = "uuid")]
     after: Option<String>,
     /// At most so many.
     #[param(minimum = 1, maximum = 200, default = 50)]
@@ -49,12 +51,18 @@ pub async fn list(
         let words = format!("The query is wrong: limit must lie between 1 and {LARGEST_PAGE}.");
         return Err(Problem::unreadable(words));
     }
-    let text = |t: Option<String>| t.filter(|t| !t.contains('\0'));
+    if query.title.as_ref().is_some_and(|t| t.contains('\0')) {
+        return Err(Problem::unreadable("The query is wrong: title contains a character NUL."));
+    }
+    let after = query.after.filter(|after| !after.is_empty());
+    if after.as_ref().is_some_and(|after| uuid::Uuid::try_parse(after).is_err()) {
+        return Err(Problem::unreadable("The query is wrong: after must be the next of a page."));
+    }
     let filter = JobFilter {
         state: query.state,
         kind: query.kind,
-        title: text(query.title),
-        before: text(query.after),
+        title: query.title,
+        before: after,
         limit: i64::from(limit) + 1,
     };
     let mut jobs = app.store.jobs(&owner.id, &filter).await?;

@@ -51,6 +51,9 @@ pub enum BridgeProblem {
     /// A key is missing or not valid.
     #[response(status = 401, content_type = "application/problem+json")]
     Unknown(Problem),
+    /// Without keys, the service was asked under a name that is not this machine's.
+    #[response(status = 403, content_type = "application/problem+json")]
+    WrongHost(Problem),
     /// The request is too large.
     #[response(status = 413)]
     TooLarge(BridgeError),
@@ -267,7 +270,11 @@ async fn output<T: Serialize + Send + 'static>(
         let words = "this study is too large to be computed while you wait: coarsen its mesh or its steps";
         return Err(Refusal::new("UnsupportedFeature", words));
     }
-    let found = compute(app, study, work).await?;
+    let found = json!(compute(app, study, work).await?);
+    // JSON has no infinity: what is beyond all numbers becomes null.
+    if found.to_string().contains("null") {
+        return Err(Refusal::new("InvalidEvaluation", "the result is no finite number"));
+    }
     Ok(Json(json!({ "output": found })))
 }
 

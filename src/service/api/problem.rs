@@ -150,6 +150,9 @@ pub enum AnyProblem {
     /// A key is missing or not valid.
     #[response(status = 401, content_type = "application/problem+json")]
     Unknown(Problem),
+    /// Without keys, the service was asked under a name that is not this machine's.
+    #[response(status = 403, content_type = "application/problem+json")]
+    WrongHost(Problem),
     /// Too many requests.
     #[response(status = 429, content_type = "application/problem+json")]
     TooMany(Problem),

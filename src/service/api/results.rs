@@ -164,6 +164,7 @@ pub enum StudyFormat {
 /// How a study is wanted.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
+#[serde(deny_unknown_fields)]
 pub struct StudyQuery {
     /// "json" or "toml".
     #[serde(default)]

@@ -96,7 +96,7 @@ fn checked(given: Map<String, Value>, at: &str, limits: &Limits) -> Result<NewJo
 
 /// Why a study does not suit what is to be done with it.
 fn mismatch(kind: JobKind, study: &Study) -> Option<String> {
-    let (runs_in, tabulates) = (study.runs_in(), study.points.is_empty());
+    let (runs_in, tabulates) = (study.runs_in(), !study.searches());
     match kind {
         JobKind::Operational if runs_in => {
             Some("the study asks for a running-in design: remove running_in.minimise".to_owned())
@@ -104,9 +104,10 @@ fn mismatch(kind: JobKind, study: &Study) -> Option<String> {
         JobKind::RunningIn if !runs_in => {
             Some("the study asks for no running-in design: give running_in.minimise".to_owned())
         }
-        JobKind::Operational | JobKind::RunningIn | JobKind::Simulation | JobKind::Gradient if tabulates => {
-            Some("the study asks for a table: submit it with kind \"study\"".to_owned())
-        }
+        JobKind::Operational | JobKind::RunningIn | JobKind::Simulation if tabulates => Some(
+            "the study asks for no design but for a table or a comparison: submit it with kind \"study\""
+                .to_owned(),
+        ),
         _ => None,
     }
 }
@@ -157,11 +158,7 @@ pub async fn submit(
             Ok((StatusCode::ACCEPTED, place, Json(view)).into_response())
         }
         Some(Submitted::Known(job)) => Ok(Json(JobView::from(job)).into_response()),
-        Some(Submitted::Reused) => {
-            let problem =
-                Problem::new(StatusCode::CONFLICT, "idempotency-key-reused", "The idempotency key is taken");
-            Err(problem.detail("It was sent with another request before; choose a new one."))
-        }
+        Some(Submitted::Reused) => Err(reused()),
         None => Err(Problem::internal()),
     }
 }
@@ -178,16 +175,29 @@ fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
     }
 }
 
-/// Submits many jobs, all or none.
+fn reused() -> Problem {
+    Problem::new(StatusCode::CONFLICT, "idempotency-key-reused", "The idempotency key is taken")
+        .detail("It was sent with another request before; choose a new one.")
+}
+
+/// Submits many jobs, all or none. An `Idempotency-Key` holds for the batch as a whole.
 #[utoipa::path(
     post, path = "/v1/jobs/batch", tag = "jobs", request_body = Batch,
-    responses((status = 202, description = "They wait for workers", body = Submissions), BodyProblem, AnyProblem)
+    params(("Idempotency-Key" = Option<String>, Header, description = "As for one job", max_length = 200, pattern = "^[!-~]+$")),
+    responses(
+        (status = 202, description = "They wait for workers, or are those of an earlier request with the same key", body = Submissions),
+        (status = 409, description = "The idempotency key was used for another request", body = Problem,
+            content_type = "application/problem+json"),
+        BodyProblem, AnyProblem
+    )
 )]
 pub async fn submit_batch(
     State(app): State<App>,
     Extension(owner): Extension<Owner>,
+    headers: HeaderMap,
     Body(given): Body,
 ) -> Result<Response, Problem> {
+    let key = idempotency_key(&headers)?;
     let mut fields = Fields::new(given, "");
     let list: Option<Vec<Value>> = fields.get("jobs", "a list of jobs");
     let (missing, most) = (list.is_none() && fields.errors.is_empty(), app.limits.batch);
@@ -207,7 +217,10 @@ pub async fn submit_batch(
             _ => Err(vec![FieldError { path: at, message: "expected an object".to_owned() }]),
         };
         match found {
-            Ok(job) => jobs.push(job),
+            Ok(job) => {
+                let idempotency_key = key.as_ref().map(|key| format!("{key} {k}"));
+                jobs.push(NewJob { idempotency_key, ..job });
+            }
             Err(mut own) => errors.append(&mut own),
         }
     }
@@ -216,6 +229,9 @@ pub async fn submit_batch(
     }
     has_room(&app, &owner, jobs.len()).await?;
     let found = app.store.submit(&owner.id, &jobs).await?;
+    if found.contains(&Submitted::Reused) {
+        return Err(reused());
+    }
     app.wake.notify_waiters();
     let action = format!("submit {} jobs", found.len());
     app.store.audit(&owner.id, &action, None, owner.remote.as_deref()).await?;

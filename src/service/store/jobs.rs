@@ -69,6 +69,10 @@ impl Store {
         for new in jobs {
             all.push(submit_one(&mut tx, owner, new).await?);
         }
+        if all.contains(&Submitted::Reused) {
+            tx.rollback().await?;
+            return Ok(all);
+        }
         tx.commit().await?;
         Ok(all)
     }

@@ -40,6 +40,7 @@ impl Store {
         let secret = format!("stribeck_{id}_{random}");
         let sql = "INSERT INTO stribeck_keys (id, name, hash, created_ms) VALUES ($1, $2, $3, $4)";
         sqlx::query(sql).bind(&id).bind(name).bind(hash(&secret)).bind(now_ms()).execute(&self.write).await?;
+        self.audit("operator", &format!("create key {id}"), None, None).await?;
         Ok(ApiKey { id, secret })
     }
 
@@ -61,8 +62,11 @@ impl Store {
     /// Takes a key back; whether there was one.
     pub async fn revoke_key(&self, id: &str) -> Result<bool, StoreError> {
         let sql = "UPDATE stribeck_keys SET revoked_ms = $1 WHERE id = $2 AND revoked_ms IS NULL";
-        let done = sqlx::query(sql).bind(now_ms()).bind(id).execute(&self.write).await?;
-        Ok(done.rows_affected() > 0)
+        let done = sqlx::query(sql).bind(now_ms()).bind(id).execute(&self.write).await?.rows_affected() > 0;
+        if done {
+            self.audit("operator", &format!("revoke key {id}"), None, None).await?;
+        }
+        Ok(done)
     }
 
     /// Whether any key is valid.

@@ -34,6 +34,8 @@ use thiserror::Error;
 const READERS: u32 = 4;
 /// Connections to a server.
 const CONNECTIONS: u32 = 16;
+/// How soon it answers if it is well.
+const PROMPT: Duration = Duration::from_secs(2);
 /// How long a request waits for a connection.
 const PATIENCE: Duration = Duration::from_secs(15);
 
@@ -49,6 +51,12 @@ pub enum StoreError {
     /// The address is not one of a database.
     #[error("\"{0}\" is no database: give postgres://USER:PASSWORD@HOST/NAME, or sqlite:FILE")]
     Address(String),
+    /// It takes too long.
+    #[error("database: no answer in time")]
+    Slow,
+    /// Its file was removed or replaced.
+    #[error("database: the file {0} was removed or replaced; start again")]
+    Gone(String),
 }
 
 /// Milliseconds since 1970.
@@ -68,6 +76,27 @@ pub struct Store {
     read: AnyPool,
     write: AnyPool,
     server: bool,
+    /// The file, and which one it was when it was opened.
+    file: Option<(std::path::PathBuf, u64)>,
+}
+
+/// Which file stands at a path; the same number means the same file.
+fn identity(path: &std::path::Path) -> Option<u64> {
+    let found = std::fs::metadata(path).ok()?;
+    #[cfg(unix)]
+    return Some(std::os::unix::fs::MetadataExt::ino(&found));
+    #[cfg(not(unix))]
+    Some(u64::from(found.is_file()))
+}
+
+/// Makes the file of a database that is not there yet, for its owner only: hashes of keys stand in it.
+fn prepare(path: &std::path::Path) {
+    let mut options = std::fs::OpenOptions::new();
+    options.create(true).append(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    // What is wrong with it, the database tells.
+    let _ = options.open(path);
 }
 
 impl Store {
@@ -75,9 +104,15 @@ impl Store {
     pub async fn open(address: &str) -> Result<Self, StoreError> {
         sqlx::any::install_default_drivers();
         let server = address.starts_with("postgres://") || address.starts_with("postgresql://");
-        let address = match address.strip_prefix("sqlite:") {
-            Some(file) if !file.contains('?') => format!("sqlite:{file}?mode=rwc"),
-            Some(_) => address.to_owned(),
+        let path = address.strip_prefix("sqlite:").map(|path| path.trim_start_matches("//").to_owned());
+        let address = match &path {
+            Some(path) if path.is_empty() || path.contains([':', '?']) => {
+                return Err(StoreError::Address(address.to_owned()));
+            }
+            Some(path) => {
+                prepare(path.as_ref());
+                format!("sqlite:{path}?mode=rwc")
+            }
             None if server => address.to_owned(),
             None => return Err(StoreError::Address(address.to_owned())),
         };
@@ -96,16 +131,27 @@ impl Store {
                 },
             )
         };
-        let write = pool(if server { CONNECTIONS } else { 1 }).connect_with(options.clone()).await?;
+        let write = pool(if server { CONNECTIONS } else { 1 });
+        let write = if server { write } else { write.before_acquire(|c, _| Box::pin(is_clean(c))) };
+        let write = write.connect_with(options.clone()).await?;
         migrations().run(&write).await?;
         let read = if server { write.clone() } else { pool(READERS).connect_with(options).await? };
-        Ok(Self { read, write, server })
+        let file = path.map(std::path::PathBuf::from);
+        let file = file.and_then(|path| identity(&path).map(|id| (path, id)));
+        Ok(Self { read, write, server, file })
     }
 
-    /// Whether it answers.
+    /// Whether it answers, soon and from the place it was opened at.
     pub async fn ping(&self) -> Result<(), StoreError> {
-        sqlx::query("SELECT 1").execute(&self.read).await?;
-        Ok(())
+        let asked = sqlx::query("SELECT 1").execute(&self.read);
+        let Ok(answer) = tokio::time::timeout(PROMPT, asked).await else { return Err(StoreError::Slow) };
+        answer?;
+        match &self.file {
+            Some((path, id)) if identity(path) != Some(*id) => {
+                Err(StoreError::Gone(path.display().to_string()))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Lets go of all connections.
@@ -113,6 +159,11 @@ impl Store {
         self.read.close().await;
         self.write.close().await;
     }
+}
+
+/// Whether no transaction is left over on a connection. A full disk can leave one: what is written in it would be acknowledged, and lost.
+async fn is_clean(connection: &mut sqlx::AnyConnection) -> Result<bool, sqlx::Error> {
+    Ok(connection.execute("BEGIN").await.is_ok() && connection.execute("ROLLBACK").await.is_ok())
 }
 
 fn migrations() -> Migrator {
@@ -150,4 +201,47 @@ fn job(row: &sqlx::any::AnyRow) -> Result<Job, sqlx::Error> {
         problem_code: row.try_get("problem_code")?,
         problem_detail: row.try_get("problem_detail")?,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NewJob, Store, Submitted};
+    use crate::service::job::JobKind;
+    use sqlx::Executor;
+
+    #[test]
+    fn a_transaction_that_was_left_open_swallows_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let address = format!("sqlite:{}", folder.path().join("jobs.db").display());
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async {
+            let store = Store::open(&address).await.unwrap();
+            store.write.acquire().await.unwrap().execute("BEGIN IMMEDIATE").await.unwrap();
+            let job = NewJob {
+                kind: JobKind::Check,
+                title: "t".to_owned(),
+                study: "{}".to_owned(),
+                study_hash: "h".to_owned(),
+                idempotency_key: None,
+                request_hash: "r".to_owned(),
+            };
+            let Submitted::New(job) = store.submit("o", &[job]).await.unwrap().remove(0) else {
+                panic!("new")
+            };
+            let other = Store::open(&address).await.unwrap();
+            assert!(other.job("o", &job.id).await.unwrap().is_some(), "acknowledged is kept");
+            other.ping().await.unwrap();
+            std::fs::remove_file(folder.path().join("jobs.db")).unwrap();
+            assert!(store.ping().await.unwrap_err().to_string().contains("removed"));
+        });
+    }
+
+    #[test]
+    fn what_is_no_database_is_told() {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        for address in ["mysql://x", "sqlite::memory:", "sqlite:", "jobs.db", "sqlite:a.db?mode=ro"] {
+            let refused = runtime.block_on(Store::open(address)).unwrap_err().to_string();
+            assert!(refused.contains("is no database"), "{address}: {refused}");
+        }
+    }
 }
