@@ -29,7 +29,7 @@ pub struct ListQuery {
     /// With this text in their title; capitals do not count.
     title: Option<String>,
     /// `next` of the page before.
-    #[param(format = "uuid")]
+    #[param(format = "uuid", nullable = false)]
     after: Option<String>,
     /// At most so many.
     #[param(minimum = 1, maximum = 200, default = 50)]
@@ -54,15 +54,14 @@ pub async fn list(
     if query.title.as_ref().is_some_and(|t| t.contains('\0')) {
         return Err(Problem::unreadable("The query is wrong: title contains a character NUL."));
     }
-    let after = query.after.filter(|after| !after.is_empty());
-    if after.as_ref().is_some_and(|after| uuid::Uuid::try_parse(after).is_err()) {
+    if query.after.as_ref().is_some_and(|after| uuid::Uuid::try_parse(after).is_err()) {
         return Err(Problem::unreadable("The query is wrong: after must be the next of a page."));
     }
     let filter = JobFilter {
         state: query.state,
         kind: query.kind,
         title: query.title,
-        before: after,
+        before: query.after,
         limit: i64::from(limit) + 1,
     };
     let mut jobs = app.store.jobs(&owner.id, &filter).await?;
