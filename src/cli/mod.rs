@@ -47,7 +47,7 @@ pub fn exit_code(outcome: Outcome) -> u8 {
 #[command(
     name = "stribeck",
     version,
-    after_help = "Exit codes: 0 converged, 1 file error, 2 mistakes in the study or command line, \
+    after_help = "Exit codes: 0 converged (or simulated, where no more was asked), 1 file error, 2 mistakes in the study or command line, \
 3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 8 rows of a characteristic or parts of a comparison are missing, 9 a checked gradient is wrong, 10 budget spent, 130 cancelled."
 )]
 struct Arguments {

@@ -174,21 +174,20 @@ fn migrations() -> Migrator {
     all
 }
 
+/// A word of a row.
+fn word<T: serde::de::DeserializeOwned>(text: String) -> Result<T, sqlx::Error> {
+    serde_json::from_value(serde_json::Value::String(text)).map_err(|e| sqlx::Error::Decode(e.into()))
+}
+
 /// A row as a job.
 fn job(row: &sqlx::any::AnyRow) -> Result<Job, sqlx::Error> {
     use sqlx::Row;
-    let parsed = |text: String| serde_json::from_str(&text).ok();
-    let word = |text: &str| {
-        let words = format!("\"{text}\" in a row");
-        serde_json::from_value(serde_json::Value::String(text.to_owned())).map_err(|_| words)
-    };
-    let broken = |words: String| sqlx::Error::Decode(words.into());
+    let progress: Option<String> = row.try_get("progress")?;
     Ok(Job {
         id: row.try_get("id")?,
         owner: row.try_get("owner")?,
-        kind: word(row.try_get("kind")?).map_err(broken)?,
-        state: serde_json::from_value(serde_json::Value::String(row.try_get("state")?))
-            .map_err(|e| sqlx::Error::Decode(e.into()))?,
+        kind: word(row.try_get("kind")?)?,
+        state: word(row.try_get("state")?)?,
         title: row.try_get("title")?,
         study_hash: row.try_get("study_hash")?,
         created_ms: row.try_get("created_ms")?,
@@ -196,7 +195,7 @@ fn job(row: &sqlx::any::AnyRow) -> Result<Job, sqlx::Error> {
         finished_ms: row.try_get("finished_ms")?,
         attempts: row.try_get("attempts")?,
         cancel_requested: row.try_get::<i64, _>("cancel_requested")? != 0,
-        progress: row.try_get::<Option<String>, _>("progress")?.and_then(parsed),
+        progress: progress.and_then(|text| serde_json::from_str(&text).ok()),
         outcome: row.try_get("outcome")?,
         problem_code: row.try_get("problem_code")?,
         problem_detail: row.try_get("problem_detail")?,

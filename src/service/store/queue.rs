@@ -67,8 +67,7 @@ impl Store {
             .fetch_optional(&self.write)
             .await?;
         let Some(row) = row else { return Ok(None) };
-        let kind: String = row.try_get("kind")?;
-        let kind = JobKind::ALL.into_iter().find(|k| k.as_str() == kind).unwrap_or(JobKind::Study);
+        let kind = super::word(row.try_get("kind")?)?;
         let fence =
             Fence { id: row.try_get("id")?, worker: worker.to_owned(), attempt: row.try_get("attempts")? };
         Ok(Some(Claim { fence, kind, study: row.try_get("study")? }))
