@@ -68,6 +68,13 @@ fn a_killed_run_goes_on_to_the_same_report() {
             std::thread::sleep(Duration::from_millis((seed >> (8 * (2 * round + attempt) % 32)) % 97));
             killed += u64::from(run.0.try_wait().unwrap().is_none());
         }
+        if round == 0 && checkpoint.exists() {
+            // A look at the start in the same folder costs the stopped search nothing.
+            let mut simulate = Command::new(env!("CARGO_BIN_EXE_stribeck"));
+            simulate.arg("run").arg(&file).arg("--out").arg(&out).arg("--simulate").stdout(Stdio::null());
+            assert!(simulate.status().unwrap().success());
+            assert!(checkpoint.exists());
+        }
         assert!(killed >= 1, "the runs were over before they could be killed");
         assert!(checkpoint.exists() || out.join("report.json").exists());
         assert!(start(&file, &out).0.wait().unwrap().success());

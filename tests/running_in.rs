@@ -184,7 +184,8 @@ fn a_study_runs_its_design_in_and_reports_it() {
     let area = std::f64::consts::PI * width("diameter") * width("width") / cells;
     assert!((volume * area / bearing.wear_volume_mm3 - 1.0).abs() < 1e-9);
     let folder = tempfile::tempdir().unwrap();
-    stribeck::report::write_folder(&stribeck::report::files(&findings).unwrap(), folder.path()).unwrap();
+    stribeck::report::write_folder(&stribeck::report::files(&findings, false).unwrap(), folder.path())
+        .unwrap();
     let text = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
     assert_eq!(text("running-in.csv").lines().count(), 1 + bearing.blocks.len());
     assert!(text("wear.csv").starts_with("bearing,surface,angle_deg,axial_mm,wear_depth_um"));

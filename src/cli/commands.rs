@@ -6,7 +6,7 @@ use super::{
     RunArguments, SchemaArguments, exit_code, faults, proof_tables, tables,
 };
 use crate::optimise::EvaluationError;
-use crate::report::{self, Comparison, ComparisonStatus};
+use crate::report::{self, ComparisonStatus};
 use crate::run::{Cancel, FolderStore, RunContext};
 use crate::study::{Answer, Format, Study, StudyErrors, Sweep, Task, answer, compare_engines, prove};
 use std::io::{IsTerminal, Write};
@@ -92,9 +92,10 @@ pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
     let task = if a.simulate { Task::Simulation } else { Task::Answer };
     let found = answer(&study, task, context, &store).map_err(Stop::Simulation)?;
     bars.finish();
-    let files = found.files().map_err(|e| Stop::File(folder.clone(), e))?;
+    let files = found.files(false).map_err(|e| Stop::File(folder.clone(), e))?;
     report::write_folder(&files, &folder).map_err(|e| Stop::File(folder.clone(), e))?;
-    if !found.is_cancelled() {
+    // Only a search leaves checkpoints behind it, and only its own end makes them useless.
+    if task == Task::Answer && matches!(found, Answer::Design(_)) && !found.is_cancelled() {
         store.clear();
     }
     if a.json {
@@ -120,17 +121,15 @@ fn told(found: &Answer) -> String {
 fn code(found: &Answer) -> u8 {
     match found {
         Answer::Design(found) => exit_code(found.report.outcome.status),
-        Answer::Comparison(found) if found.any_wrong() && !is_cancelled(found) => EXIT_WRONG_GRADIENT,
+        Answer::Comparison(found) if found.any_wrong() && found.status != ComparisonStatus::Cancelled => {
+            EXIT_WRONG_GRADIENT
+        }
         _ => match found.status().as_str() {
             "cancelled" => exit_code(crate::optimise::Outcome::Cancelled),
             "incomplete" => EXIT_INCOMPLETE,
             _ => 0,
         },
     }
-}
-
-fn is_cancelled(found: &Comparison) -> bool {
-    found.status == ComparisonStatus::Cancelled
 }
 
 /// The study, from the design of an earlier report if there is one.

@@ -2,7 +2,7 @@
 
 use super::data::TOUCH_MPA;
 use super::maps::Frame;
-use super::{BearingRunningIn, Findings, ReportFile, figures, maps, run_in_figures};
+use super::{BearingRunningIn, Findings, Report, ReportFile, figures, maps, run_in_figures};
 use minijinja::value::Serde;
 use minijinja::{Environment, Value, context};
 use serde::Serialize;
@@ -87,68 +87,88 @@ fn cycle_figures(findings: &Findings) -> Vec<CycleFigures> {
         .collect()
 }
 
-/// Figures of every bearing's running-in.
-fn running_in_figures(findings: &Findings) -> Vec<RunningInFigures> {
-    let bearings = findings.report.running_in.iter().flat_map(|r| &r.bearings);
-    bearings.enumerate().map(RunningInFigures::of).collect()
+/// All figures of a page, drawn once.
+#[derive(Serialize)]
+pub(super) struct Figures {
+    cycles: Vec<CycleFigures>,
+    running_in: Vec<RunningInFigures>,
+    convergence: Option<String>,
+    front: Option<String>,
+    cylinder: Option<String>,
 }
 
-/// The figures of the page one by one, as SVG: `orbit-1.svg` and so on, numbered by cycle or bearing.
-pub fn plots(findings: &Findings) -> Vec<ReportFile> {
-    let mut all = Vec::new();
-    let mut add = |name: String, text: &str| {
-        if text.starts_with("<svg") {
-            all.push(ReportFile { name: format!("{}.svg", name.replace('_', "-")), text: text.to_owned() });
+impl Figures {
+    /// Draws those of a report.
+    pub fn of(findings: &Findings) -> Self {
+        let report = &findings.report;
+        let bearings = report.running_in.iter().flat_map(|r| &r.bearings);
+        let searched = !report.history.is_empty();
+        Self {
+            cycles: cycle_figures(findings),
+            running_in: bearings.enumerate().map(RunningInFigures::of).collect(),
+            convergence: searched.then(|| figures::convergence(report, "convergence")),
+            front: report.pareto.as_ref().map(|p| figures::front(p, "front")),
+            cylinder: (!findings.cylinder.is_empty())
+                .then(|| figures::cylinder(&findings.cylinder, "cylinder")),
         }
-    };
-    let cycles = cycle_figures(findings);
-    let cycles = cycles.iter().map(|c| (String::new(), serde_json::to_value(c)));
-    let bearings = running_in_figures(findings);
-    let bearings = bearings.iter().map(|b| ("running-in-".to_owned(), serde_json::to_value(b)));
-    for list in [cycles.collect::<Vec<_>>(), bearings.collect()] {
-        for (k, (prefix, figures)) in list.into_iter().enumerate() {
-            let Ok(serde_json::Value::Object(figures)) = figures else { continue };
-            for (name, figure) in figures {
-                match figure {
-                    serde_json::Value::String(text) => add(format!("{prefix}{name}-{}", k + 1), &text),
-                    serde_json::Value::Array(surfaces) => {
-                        for (text, surface) in surfaces.iter().zip(["shell", "journal"]) {
-                            let text = text.as_str().unwrap_or_default();
-                            add(format!("{prefix}{name}-{surface}-{}", k + 1), text);
+    }
+
+    /// They one by one, as SVG: `orbit-1.svg` and so on, numbered by cycle or bearing.
+    pub fn files(&self) -> Vec<ReportFile> {
+        let mut all = Vec::new();
+        let mut add = |name: String, text: &str| {
+            if text.starts_with("<svg") {
+                all.push(ReportFile {
+                    name: format!("{}.svg", name.replace('_', "-")),
+                    text: text.to_owned(),
+                });
+            }
+        };
+        let cycles = self.cycles.iter().map(|c| (String::new(), serde_json::to_value(c)));
+        let bearings = self.running_in.iter().map(|b| ("running-in-".to_owned(), serde_json::to_value(b)));
+        for list in [cycles.collect::<Vec<_>>(), bearings.collect()] {
+            for (k, (prefix, figures)) in list.into_iter().enumerate() {
+                let Ok(serde_json::Value::Object(figures)) = figures else { continue };
+                for (name, figure) in figures {
+                    match figure {
+                        serde_json::Value::String(text) => add(format!("{prefix}{name}-{}", k + 1), &text),
+                        serde_json::Value::Array(surfaces) => {
+                            for (text, surface) in surfaces.iter().zip(["shell", "journal"]) {
+                                let text = text.as_str().unwrap_or_default();
+                                add(format!("{prefix}{name}-{surface}-{}", k + 1), text);
+                            }
                         }
+                        _ => {}
                     }
-                    _ => {}
                 }
             }
         }
+        for (name, figure) in
+            [("convergence", &self.convergence), ("front", &self.front), ("cylinder", &self.cylinder)]
+        {
+            figure.iter().for_each(|text| add(name.to_owned(), text));
+        }
+        all
     }
-    if !findings.report.history.is_empty() {
-        add("convergence".to_owned(), &figures::convergence(&findings.report, "convergence"));
+
+    /// The page with them.
+    pub fn page(&self, report: &Report) -> Result<String, minijinja::Error> {
+        let study = toml::to_string(&report.provenance.study).unwrap_or_default();
+        let mut environment = environment();
+        environment.add_template("report", TEMPLATE)?;
+        environment.get_template("report")?.render(context! {
+            r => Value::from(Serde(report)),
+            figures => Value::from(Serde(self)),
+            touch_mpa => TOUCH_MPA,
+            style => STYLE,
+            study,
+        })
     }
-    all
 }
 
 /// The page as text.
 pub fn html(findings: &Findings) -> Result<String, minijinja::Error> {
-    let report = &findings.report;
-    let (cycles, running_in) = (cycle_figures(findings), running_in_figures(findings));
-    let convergence = (!report.history.is_empty()).then(|| figures::convergence(report, "convergence"));
-    let front = report.pareto.as_ref().map(|p| figures::front(p, "front"));
-    let cylinder = (!findings.cylinder.is_empty()).then(|| figures::cylinder(&findings.cylinder, "cylinder"));
-    let study = toml::to_string(&report.provenance.study).unwrap_or_default();
-    let mut environment = environment();
-    environment.add_template("report", TEMPLATE)?;
-    environment.get_template("report")?.render(context! {
-        r => Value::from(Serde(report)),
-        cycles => Value::from(Serde(cycles)),
-        convergence,
-        front,
-        cylinder,
-        running_in => Value::from(Serde(running_in)),
-        touch_mpa => TOUCH_MPA,
-        style => STYLE,
-        study,
-    })
+    Figures::of(findings).page(&findings.report)
 }
 
 /// An answer that has no page of its own, as it is.

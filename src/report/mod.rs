@@ -27,7 +27,7 @@ pub use comparison::{
 };
 pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
-pub use html::{html, plain_page, plots};
+pub use html::{html, plain_page};
 pub use running_in::{
     ApproximationReport, BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, ProfileReport,
     RunningInBlock, RunningInGradientReport, RunningInReport, StageReport, StribeckPoint, WearLimitReport,
@@ -74,8 +74,9 @@ impl Files {
     }
 }
 
-/// The files of a report: `report.json`, `orbit.csv`, where there are any the fields (`sensitivity.csv`, `*.vts`), `report.html`.
-pub fn files(findings: &Findings) -> std::io::Result<Vec<ReportFile>> {
+/// The files of a report: `report.json`, `orbit.csv`, where there are any the fields (`sensitivity.csv`, `*.vts`), `report.html`;
+/// with `plots` every figure of the page as SVG, too.
+pub fn files(findings: &Findings, plots: bool) -> std::io::Result<Vec<ReportFile>> {
     let mut all = Files::default();
     all.json(&findings.report)?;
     all.add("orbit.csv", orbit_csv(findings))?;
@@ -95,7 +96,11 @@ pub fn files(findings: &Findings) -> std::io::Result<Vec<ReportFile>> {
             all.add(format!("{surface}-{}.vts", k + 1), Ok::<_, std::fmt::Error>(text))?;
         }
     }
-    all.add("report.html", html(findings))?;
+    let figures = html::Figures::of(findings);
+    all.add("report.html", figures.page(&findings.report))?;
+    if plots {
+        all.0.extend(figures.files());
+    }
     Ok(all.0)
 }
 

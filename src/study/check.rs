@@ -7,6 +7,7 @@ use super::comparison::ComparisonPlan;
 use super::document::{Format, parse};
 use super::faults::{Fault, Faults, StudyErrors, line_of, without_nulls};
 use super::file::{FilmModelName, StudyFile};
+use super::hash::sha256;
 use super::linear::{LinearPlan, linear_constraints};
 use super::oil::OilUse;
 use super::pareto::ParetoPlan;
@@ -22,7 +23,6 @@ use crate::cranktrain::{BearingParameter, Cylinder, VeeEngine};
 use crate::gradient::EngineName;
 use crate::orbit::OrbitOptions;
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// Cycles that are held in memory at a time, per bearing and operating point.
@@ -242,8 +242,7 @@ pub(super) fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Fault
         faults.add("film", words);
         return None;
     }
-    let digest = Sha256::digest(format!("{}{fingerprint}", study.to_json()).as_bytes());
-    study.hash = digest.iter().map(|b| format!("{b:02x}")).collect();
+    study.hash = sha256(&format!("{}{fingerprint}", study.to_json()));
     Some(study)
 }
 

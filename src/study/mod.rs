@@ -26,6 +26,7 @@ mod file;
 mod film;
 mod fit;
 mod given;
+mod hash;
 mod heat;
 mod keep;
 mod lexicon;
@@ -75,6 +76,7 @@ pub use engines::{EngineComparison, EngineRow, Sweep, compare_engines};
 pub use faults::{Fault, StudyErrors};
 pub use file::StudyFile;
 pub use given::Given;
+pub use hash::{hex, sha256};
 pub use model::{ModelInput, ModelOutput, StudyModel};
 pub use plans::{
     BearingPlan, ConstraintPlan, FilmPlan, HeatPlan, OilPlan, OperatingPoint, ParameterPlan, RoughnessPlan,

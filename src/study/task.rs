@@ -3,10 +3,9 @@
 use super::check::Study;
 use super::engines::{EngineComparison, Sweep, compare_engines};
 use super::{characterise, compare, run_saved, simulate};
-use crate::optimise::{EvaluationError, Outcome};
+use crate::optimise::EvaluationError;
 use crate::report::{
-    Characteristic, CharacteristicStatus, Comparison, ComparisonStatus, Findings, ReportFile,
-    characteristic_files, comparison_files, files, plots,
+    Characteristic, Comparison, Findings, ReportFile, characteristic_files, comparison_files, files,
 };
 use crate::run::{RunContext, Store};
 
@@ -65,23 +64,13 @@ pub fn answer<'r>(
 impl Answer {
     /// How it ended: an [`Outcome`] for designs, "complete", "incomplete" or "cancelled" for everything else.
     pub fn status(&self) -> String {
-        let word = |outcome: Outcome| {
-            serde_json::to_value(outcome).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
-        };
+        fn word(status: impl serde::Serialize) -> String {
+            serde_json::to_value(status).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
+        }
         match self {
             Self::Design(found) => word(found.report.outcome.status),
-            Self::Characteristic(found) => match found.status {
-                CharacteristicStatus::Complete => "complete",
-                CharacteristicStatus::Incomplete => "incomplete",
-                CharacteristicStatus::Cancelled => "cancelled",
-            }
-            .to_owned(),
-            Self::Comparison(found) => match found.status {
-                ComparisonStatus::Complete => "complete",
-                ComparisonStatus::Incomplete => "incomplete",
-                ComparisonStatus::Cancelled => "cancelled",
-            }
-            .to_owned(),
+            Self::Characteristic(found) => word(found.status),
+            Self::Comparison(found) => word(found.status),
             Self::Gradient(_) => "complete".to_owned(),
         }
     }
@@ -91,18 +80,10 @@ impl Answer {
         self.status() == "cancelled"
     }
 
-    /// The figures of a design one by one.
-    pub fn plots(&self) -> Vec<ReportFile> {
+    /// `report.json`, `report.html` (none for gradients) and what stands beside them; with `plots` the figures of a design, too.
+    pub fn files(&self, plots: bool) -> std::io::Result<Vec<ReportFile>> {
         match self {
-            Self::Design(found) => plots(found),
-            _ => Vec::new(),
-        }
-    }
-
-    /// `report.json`, `report.html` (none for gradients) and what stands beside them.
-    pub fn files(&self) -> std::io::Result<Vec<ReportFile>> {
-        match self {
-            Self::Design(found) => files(found),
+            Self::Design(found) => files(found, plots),
             Self::Characteristic(found) => characteristic_files(found),
             Self::Comparison(found) => comparison_files(found),
             Self::Gradient(found) => {

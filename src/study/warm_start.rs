@@ -2,7 +2,6 @@
 
 use super::check::Study;
 use crate::report::Report;
-use sha2::{Digest, Sha256};
 
 impl Study {
     /// The study with the values of an earlier design as starts, moved into its boxes; returns how many parameters were found. The
@@ -39,8 +38,7 @@ impl Study {
         }
         // Other starts are another search: what was saved of the first must not be taken for its own.
         let starts: String = self.parameters.iter().map(|p| format!("{:x} ", p.start.to_bits())).collect();
-        let digest = Sha256::digest(format!("{} {starts}", self.hash).as_bytes());
-        self.hash = digest.iter().map(|b| format!("{b:02x}")).collect();
+        self.hash = super::hash::sha256(&format!("{} {starts}", self.hash));
         Ok(found)
     }
 }

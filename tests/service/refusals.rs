@@ -45,6 +45,10 @@ fn all_mistakes_of_a_study_are_told_at_once_with_their_paths() {
             .problem(422, "invalid-study");
         assert!(paths(&problem).contains(&"kind".to_owned()), "{problem}");
     }
+    let tabulates =
+        std::fs::read_to_string(crate::common::here("studies/steady-raimondi-boyd.toml")).unwrap();
+    let body = json!({ "kind": "gradient", "study": tabulates });
+    assert_eq!(paths(&service.post("/v1/jobs", &body).problem(422, "invalid-study")), ["kind"]);
     // No text has a NUL, and no database takes one.
     let nul = tiny().replace("title = \"Big", "title = \"\\u0000Big");
     assert_eq!(

@@ -173,7 +173,7 @@ impl Fields {
                 self.errors.extend(of_study(&e.faults, &path));
                 None
             }
-            Ok(study) if study.to_json().to_string().contains("\\u0000") => {
+            Ok(study) if has_nul(&study.to_json()) => {
                 self.wrong("study", "contains a character NUL, which no text has: remove it");
                 None
             }
@@ -195,6 +195,16 @@ impl Fields {
             self.wrong(&name, format!("is not known; known are {}", known.join(", ")));
         }
         self.errors
+    }
+}
+
+/// Whether a key or a text has the character NUL, which PostgreSQL does not keep.
+fn has_nul(value: &Value) -> bool {
+    match value {
+        Value::String(text) => text.contains('\0'),
+        Value::Array(list) => list.iter().any(has_nul),
+        Value::Object(map) => map.iter().any(|(key, value)| key.contains('\0') || has_nul(value)),
+        _ => false,
     }
 }
 

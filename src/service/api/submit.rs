@@ -8,14 +8,13 @@ use super::view::JobView;
 use crate::service::job::JobKind;
 use crate::service::limits::Limits;
 use crate::service::store::{NewJob, Submitted};
-use crate::study::Study;
+use crate::study::{Study, sha256};
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::{Extension, Json};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
-use sha2::{Digest, Sha256};
 use utoipa::{IntoParams, ToSchema};
 
 /// A job to submit.
@@ -72,8 +71,7 @@ const LONGEST_KEY: usize = 200;
 
 /// A checked submission, or all that is wrong with it.
 fn checked(given: Map<String, Value>, at: &str, limits: &Limits) -> Result<NewJob, Vec<FieldError>> {
-    let hash = Sha256::digest(Value::Object(given.clone()).to_string());
-    let request_hash = hash.iter().map(|b| format!("{b:02x}")).collect();
+    let request_hash = sha256(&Value::Object(given.clone()).to_string());
     let mut fields = Fields::new(given, at);
     let words = JobKind::ALL.map(JobKind::as_str).join(", ");
     let kind: JobKind = fields.get("kind", &format!("one of {words}")).unwrap_or(JobKind::Study);
@@ -108,6 +106,9 @@ fn mismatch(kind: JobKind, study: &Study) -> Option<String> {
             "the study asks for no design but for a table or a comparison: submit it with kind \"study\""
                 .to_owned(),
         ),
+        JobKind::Gradient if study.points.is_empty() => {
+            Some("the study tabulates a characteristic, which has no gradient".to_owned())
+        }
         _ => None,
     }
 }

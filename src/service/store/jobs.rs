@@ -47,14 +47,18 @@ pub struct JobFilter {
     pub limit: i64,
 }
 
-/// The start of a query for jobs.
+/// What a job is read from.
+macro_rules! columns {
+    () => {
+        "id, owner, kind, state, title, study_hash, created_ms, started_ms, finished_ms, attempts, cancel_requested, \
+         progress, outcome, problem_code, problem_detail"
+    };
+}
+
+/// A query for jobs.
 macro_rules! select {
     ($rest:literal) => {
-        concat!(
-            "SELECT id, owner, kind, state, title, study_hash, created_ms, started_ms, finished_ms, attempts, \
-             cancel_requested, progress, outcome, problem_code, problem_detail FROM stribeck_jobs ",
-            $rest
-        )
+        concat!("SELECT ", columns!(), " FROM stribeck_jobs ", $rest)
     };
 }
 
@@ -163,11 +167,14 @@ impl Store {
 
 async fn submit_one(tx: &mut AnyConnection, owner: &str, new: &NewJob) -> Result<Submitted, StoreError> {
     let (id, now) = (new_id(), now_ms());
-    let sql = "INSERT INTO stribeck_jobs (id, owner, kind, state, title, study, study_hash, idempotency_key, \
-               request_hash, created_ms, attempts, max_attempts, cancel_requested) \
-               VALUES ($1, $2, $3, 'queued', $4, $5, $6, $7, $8, $9, 0, $10, 0) ON CONFLICT DO NOTHING";
+    let sql = concat!(
+        "INSERT INTO stribeck_jobs (id, owner, kind, state, title, study, study_hash, idempotency_key, request_hash, \
+         created_ms, attempts, max_attempts, cancel_requested) \
+         VALUES ($1, $2, $3, 'queued', $4, $5, $6, $7, $8, $9, 0, $10, 0) ON CONFLICT DO NOTHING RETURNING ",
+        columns!()
+    );
     let added = sqlx::query(sql)
-        .bind(&id)
+        .bind(id)
         .bind(owner)
         .bind(new.kind.as_str())
         .bind(&new.title)
@@ -177,19 +184,20 @@ async fn submit_one(tx: &mut AnyConnection, owner: &str, new: &NewJob) -> Result
         .bind(&new.request_hash)
         .bind(now)
         .bind(MOST_ATTEMPTS)
-        .execute(&mut *tx)
+        .fetch_optional(&mut *tx)
         .await?;
-    if added.rows_affected() > 0 {
-        let row = sqlx::query(select!("WHERE id = $1")).bind(&id).fetch_one(&mut *tx).await?;
+    if let Some(row) = added {
         return Ok(Submitted::New(job(&row)?));
     }
-    let sql = "SELECT request_hash FROM stribeck_jobs WHERE owner = $1 AND idempotency_key = $2";
+    let sql = concat!(
+        "SELECT request_hash, ",
+        columns!(),
+        " FROM stribeck_jobs WHERE owner = $1 AND idempotency_key = $2"
+    );
     let key = new.idempotency_key.as_deref();
-    let hash: String = sqlx::query(sql).bind(owner).bind(key).fetch_one(&mut *tx).await?.try_get(0)?;
-    if hash != new.request_hash {
-        return Ok(Submitted::Reused);
-    }
-    let sql = select!("WHERE owner = $1 AND idempotency_key = $2");
     let row = sqlx::query(sql).bind(owner).bind(key).fetch_one(&mut *tx).await?;
-    Ok(Submitted::Known(job(&row)?))
+    match row.try_get::<String, _>("request_hash")? == new.request_hash {
+        true => Ok(Submitted::Known(job(&row)?)),
+        false => Ok(Submitted::Reused),
+    }
 }

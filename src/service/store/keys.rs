@@ -1,7 +1,7 @@
 //! Keys of those who may ask, of which only hashes are kept, and the log of what they did.
 
 use super::{Store, StoreError, new_id, now_ms};
-use sha2::{Digest, Sha256};
+use crate::study::{hex, sha256};
 use sqlx::Row;
 use subtle::ConstantTimeEq;
 
@@ -27,19 +27,20 @@ pub struct KeyRow {
     pub revoked_ms: Option<i64>,
 }
 
-fn hash(secret: &str) -> String {
-    Sha256::digest(secret.as_bytes()).iter().map(|b| format!("{b:02x}")).collect()
-}
-
 impl Store {
     /// Makes a key.
     pub async fn new_key(&self, name: &str) -> Result<ApiKey, StoreError> {
         let id = uuid::Uuid::now_v7().simple().to_string();
         let random: [u8; 32] = rand::random();
-        let random: String = random.iter().map(|b| format!("{b:02x}")).collect();
-        let secret = format!("stribeck_{id}_{random}");
+        let secret = format!("stribeck_{id}_{}", hex(&random));
         let sql = "INSERT INTO stribeck_keys (id, name, hash, created_ms) VALUES ($1, $2, $3, $4)";
-        sqlx::query(sql).bind(&id).bind(name).bind(hash(&secret)).bind(now_ms()).execute(&self.write).await?;
+        sqlx::query(sql)
+            .bind(&id)
+            .bind(name)
+            .bind(sha256(&secret))
+            .bind(now_ms())
+            .execute(&self.write)
+            .await?;
         self.audit("operator", &format!("create key {id}"), None, None).await?;
         Ok(ApiKey { id, secret })
     }
@@ -83,7 +84,7 @@ impl Store {
         let row = sqlx::query(sql).bind(id).fetch_optional(&self.read).await?;
         let Some(row) = row else { return Ok(None) };
         let kept: String = row.try_get(0)?;
-        let same = bool::from(kept.as_bytes().ct_eq(hash(secret).as_bytes()));
+        let same = bool::from(kept.as_bytes().ct_eq(sha256(secret).as_bytes()));
         Ok(same.then(|| id.to_owned()))
     }
 

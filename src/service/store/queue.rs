@@ -5,7 +5,9 @@
 use super::{Store, StoreError, now_ms};
 use crate::report::ReportFile;
 use crate::service::job::{JobKind, JobProgress, JobState};
-use sqlx::{AnyConnection, Row};
+use sqlx::any::AnyArguments;
+use sqlx::query::Query;
+use sqlx::{Any, AnyConnection, Row};
 use std::time::Duration;
 
 /// How a job went to a worker.
@@ -43,14 +45,34 @@ pub struct Ending {
     pub files: Vec<ReportFile>,
 }
 
-/// The oldest job that waits.
-const NEXT: &str = "UPDATE stribeck_jobs SET state = 'running', worker = $1, attempts = attempts + 1, started_ms = $2, \
-    lease_until_ms = $3, progress = NULL WHERE id = (SELECT id FROM stribeck_jobs WHERE state = 'queued' \
-    ORDER BY id LIMIT 1) RETURNING id, kind, study, attempts";
-/// The same where several servers ask at once: a row another one is about to take is passed over.
-const NEXT_OF_SERVER: &str = "UPDATE stribeck_jobs SET state = 'running', worker = $1, attempts = attempts + 1, \
-    started_ms = $2, lease_until_ms = $3, progress = NULL WHERE id = (SELECT id FROM stribeck_jobs WHERE state = 'queued' \
-    ORDER BY id LIMIT 1 FOR UPDATE SKIP LOCKED) RETURNING id, kind, study, attempts";
+/// Takes the oldest job that waits; what stands behind says what happens to a row that somebody else is about to take.
+macro_rules! next {
+    ($lock:literal) => {
+        concat!(
+            "UPDATE stribeck_jobs SET state = 'running', worker = $1, attempts = attempts + 1, started_ms = $2, \
+             lease_until_ms = $3, progress = NULL WHERE id = (SELECT id FROM stribeck_jobs WHERE state = 'queued' \
+             ORDER BY id LIMIT 1",
+            $lock,
+            ") RETURNING id, kind, study, attempts"
+        )
+    };
+}
+
+/// A change of a job that is still the worker's; the first three values are the fence.
+macro_rules! fenced {
+    ($set:literal) => {
+        concat!(
+            "UPDATE stribeck_jobs SET ",
+            $set,
+            " WHERE id = $1 AND worker = $2 AND attempts = $3 AND state = 'running'"
+        )
+    };
+}
+
+/// Such a change with its fence.
+fn behind(sql: &'static str, fence: &Fence) -> Query<'static, Any, AnyArguments> {
+    sqlx::query(sql).bind(fence.id.clone()).bind(fence.worker.clone()).bind(fence.attempt)
+}
 
 fn ends_ms(lease: Duration) -> i64 {
     now_ms() + i64::try_from(lease.as_millis()).unwrap_or(i64::MAX / 2)
@@ -59,7 +81,8 @@ fn ends_ms(lease: Duration) -> i64 {
 impl Store {
     /// Takes the job that waits longest.
     pub async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>, StoreError> {
-        let sql = if self.server { NEXT_OF_SERVER } else { NEXT };
+        // Several servers may ask at once; a file has one writer.
+        let sql = if self.server { next!(" FOR UPDATE SKIP LOCKED") } else { next!("") };
         let row = sqlx::query(sql)
             .bind(worker)
             .bind(now_ms())
@@ -85,19 +108,17 @@ impl Store {
     /// Ends a job with its files; whether it was still the worker's.
     pub async fn finish(&self, fence: &Fence, ending: &Ending) -> Result<bool, StoreError> {
         let mut tx = self.write.begin().await?;
-        let sql = "UPDATE stribeck_jobs SET state = $1, outcome = $2, problem_code = $3, problem_detail = $4, \
-                   finished_ms = $5, worker = NULL, lease_until_ms = NULL \
-                   WHERE id = $6 AND worker = $7 AND attempts = $8 AND state = 'running'";
-        let (code, detail) = ending.problem.as_ref().map(|(c, d)| (*c, d.as_str())).unzip();
-        let ended = sqlx::query(sql)
+        let sql = fenced!(
+            "state = $4, outcome = $5, problem_code = $6, problem_detail = $7, finished_ms = $8, worker = NULL, \
+             lease_until_ms = NULL"
+        );
+        let (code, detail) = ending.problem.as_ref().map(|(c, d)| (*c, d.clone())).unzip();
+        let ended = behind(sql, fence)
             .bind(ending.state.as_str())
-            .bind(ending.outcome.as_deref())
+            .bind(ending.outcome.clone())
             .bind(code)
             .bind(detail)
             .bind(now_ms())
-            .bind(&fence.id)
-            .bind(&fence.worker)
-            .bind(fence.attempt)
             .execute(&mut *tx)
             .await?;
         if ended.rows_affected() == 0 {
@@ -118,28 +139,14 @@ impl Store {
 
     /// Puts a job that was begun back into the queue, as if it had not been begun.
     pub async fn hand_back(&self, fence: &Fence) -> Result<bool, StoreError> {
-        let sql = "UPDATE stribeck_jobs SET state = 'queued', attempts = attempts - 1, worker = NULL, \
-                   lease_until_ms = NULL WHERE id = $1 AND worker = $2 AND attempts = $3 AND state = 'running'";
-        let done = sqlx::query(sql)
-            .bind(&fence.id)
-            .bind(&fence.worker)
-            .bind(fence.attempt)
-            .execute(&self.write)
-            .await?;
-        Ok(done.rows_affected() > 0)
+        let sql = fenced!("state = 'queued', attempts = attempts - 1, worker = NULL, lease_until_ms = NULL");
+        Ok(behind(sql, fence).execute(&self.write).await?.rows_affected() > 0)
     }
 
     /// What a running job tells of itself; whether it was still the worker's.
     pub async fn tell(&self, fence: &Fence, progress: &JobProgress) -> Result<bool, StoreError> {
         let text = serde_json::to_string(progress).unwrap_or_default();
-        let sql = "UPDATE stribeck_jobs SET progress = $1 WHERE id = $2 AND worker = $3 AND attempts = $4";
-        let done = sqlx::query(sql)
-            .bind(text)
-            .bind(&fence.id)
-            .bind(&fence.worker)
-            .bind(fence.attempt)
-            .execute(&self.write)
-            .await?;
+        let done = behind(fenced!("progress = $4"), fence).bind(text).execute(&self.write).await?;
         Ok(done.rows_affected() > 0)
     }
 
@@ -163,9 +170,6 @@ impl Store {
 
     /// Whether a job is still a worker's, in a transaction that writes for it.
     pub(super) async fn holds(tx: &mut AnyConnection, fence: &Fence) -> Result<bool, StoreError> {
-        let sql = "UPDATE stribeck_jobs SET attempts = attempts WHERE id = $1 AND worker = $2 AND attempts = $3 AND state = 'running'";
-        let done =
-            sqlx::query(sql).bind(&fence.id).bind(&fence.worker).bind(fence.attempt).execute(tx).await?;
-        Ok(done.rows_affected() > 0)
+        Ok(behind(fenced!("attempts = attempts"), fence).execute(tx).await?.rows_affected() > 0)
     }
 }

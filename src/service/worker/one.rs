@@ -154,12 +154,11 @@ fn compute(study: &Study, kind: JobKind, context: RunContext<'_>, store: &dyn Ch
         Err(EvaluationError::Cancelled) => return Ok(("cancelled".to_owned(), true, Vec::new())),
         Err(EvaluationError::Failed(reason)) => return Err(("not-computable", reason)),
     };
-    let mut files = found.files().map_err(|e| ("report-failed", e.to_string()))?;
+    let mut files = found.files(true).map_err(|e| ("report-failed", e.to_string()))?;
     if !matches!(found, Answer::Gradient(_)) {
         let text = study.to_toml();
         files.push(ReportFile { name: "study.toml".to_owned(), text });
     }
-    files.extend(found.plots());
     with_page(study, files).map(|files| (found.status(), found.is_cancelled(), files))
 }
 
