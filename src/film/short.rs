@@ -25,8 +25,6 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const NODES: usize = 32;
 /// Angles at which the pressure of the mid-plane is looked at.
 const ANGLES: usize = 360;
-/// Share of the peak below which a pressure has no weight in the smooth maximum (sharpness 10 and more).
-const NEAR_PEAK: f64 = 0.02;
 
 /// Short-bearing film.
 #[derive(Debug, Clone)]
@@ -210,11 +208,10 @@ impl<'a> State<'a> {
         let (u, v) = (self.u, self.impedance.v);
         let share = |n: &[f64; 2]| {
             let p = mid_plane(u, v, n);
-            // Far below the peak the weight is below rounding.
-            if p > NEAR_PEAK * self.peak.exact() {
-                self.peak.derivative(p) * mid_plane_change(u, v, du, dv, n)
-            } else {
+            if self.peak.is_lost(p) {
                 0.0
+            } else {
+                self.peak.derivative(p) * mid_plane_change(u, v, du, dv, n)
             }
         };
         self.film.normals.iter().map(share).sum()

@@ -11,17 +11,24 @@ pub struct PowerMean {
     exponent: f64,
     extremum: f64,
     sum: f64,
+    /// Share of a largest value (a smallest one over it) below which a value is lost in the rounding of the sum.
+    lost: f64,
 }
+
+/// Logarithm of what is lost in the rounding of a sum of at least one.
+const LOST: f64 = -40.0;
 
 impl PowerMean {
     /// Aggregates towards the largest value.
     pub fn maximum(sharpness: f64) -> Self {
-        Self { exponent: sharpness.abs(), extremum: 0.0, sum: 0.0 }
+        let exponent = sharpness.abs();
+        Self { exponent, extremum: 0.0, sum: 0.0, lost: (LOST / exponent).exp() }
     }
 
     /// Aggregates towards the smallest value.
     pub fn minimum(sharpness: f64) -> Self {
-        Self { exponent: -sharpness.abs(), extremum: f64::INFINITY, sum: 0.0 }
+        let exponent = -sharpness.abs();
+        Self { exponent, extremum: f64::INFINITY, sum: 0.0, lost: (-LOST / exponent).exp() }
     }
 
     /// Adds a value. Values that are not positive count as zero for a maximum and make a minimum zero.
@@ -33,8 +40,16 @@ impl PowerMean {
                 if self.sum == 0.0 { 0.0 } else { self.sum * (self.extremum / value).powf(self.exponent) };
             self.extremum = value;
         }
-        if self.extremum > 0.0 && self.extremum.is_finite() {
+        if self.extremum > 0.0 && self.extremum.is_finite() && !self.is_lost(value) {
             self.sum += (value / self.extremum).powf(self.exponent);
+        }
+    }
+
+    /// Whether a value is so far from the extremum that it has no weight.
+    pub fn is_lost(&self, value: f64) -> bool {
+        match self.exponent > 0.0 {
+            true => value < self.lost * self.extremum,
+            false => self.lost * value > self.extremum,
         }
     }
 
