@@ -81,7 +81,7 @@ pub(super) fn constraint(
     Some(ConstraintPlan { quantity, bearing, sense, limit })
 }
 
-fn wrong_side(quantity: QuantityName, sense: Sense) -> Option<&'static str> {
+pub(super) fn wrong_side(quantity: QuantityName, sense: Sense) -> Option<&'static str> {
     match quantity {
         QuantityName::MeanFrictionLoss => {
             Some("the mean friction loss is minimised; it cannot be limited too")

@@ -8,7 +8,7 @@ use super::variables::Variable;
 use crate::cranktrain::BearingParameter;
 
 /// All coefficients of a spline.
-const EVERY: &str = "coefficients[*]";
+pub(super) const EVERY: &str = "coefficients[*]";
 /// Keys below a bearing that exist only with a section of their own.
 const DETAILS: [&str; 4] = ["roughness.", "supply.", "shapes.", "tilt_"];
 

@@ -1,6 +1,7 @@
 //! Where the viscosity comes from: a grade, a data sheet, three points, or a constant.
 
 use super::Given;
+use super::catalogue::oil as laws_of_oil;
 use super::faults::{Faults, refuse_others};
 use super::file::{OilFile, ViscosityLawName, ViscosityPointFile};
 use super::oil::density_range;
@@ -81,7 +82,7 @@ pub(super) fn viscosity(
         let density = density(oil, heat, faults);
         return Some((
             Viscosity::Constant { viscosity_pa_s: eta? },
-            "the same at every temperature".to_owned(),
+            laws_of_oil::CONSTANT.words.to_owned(),
             density,
         ));
     }
@@ -89,7 +90,7 @@ pub(super) fn viscosity(
         let used: &[&str] = if heat { &["viscosity_points", "density_15c"] } else { &["viscosity_points"] };
         refuse(oil, "viscosity_points", used, faults);
         let density = density(oil, heat, faults);
-        let words = "Vogel (1921) through three points".to_owned();
+        let words = laws_of_oil::VOGEL_OF_POINTS.words.to_owned();
         return Some((through_points(&oil.viscosity_points, faults)?, words, density));
     }
     if !oil.grade.is_absent() {
@@ -124,8 +125,8 @@ fn drawn_through(
     let sheet = sheet?;
     let law = sheet.law(name).map_err(|e| faults.add(path, e.to_string())).ok()?;
     let who = match name {
-        ViscosityLawName::Walther => "Walther (1931), ASTM D341",
-        ViscosityLawName::Vogel => "Vogel (1921)",
+        ViscosityLawName::Walther => laws_of_oil::WALTHER.words,
+        ViscosityLawName::Vogel => laws_of_oil::VOGEL.words,
     };
     Some((law, format!("{who}, through the two points of {}", sheet.name)))
 }
