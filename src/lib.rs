@@ -11,7 +11,7 @@
 //! | floor | module | what lives there |
 //! |---|---|---|
 //! | roof | `main.rs` | hands the exit code to the system |
-//! | 10 | [`cli`] | how people come in: `run`, `check`, `schema`, `gradient`, `serve`, `worker`, `key` |
+//! | 10 | [`cli`] | how people come in: `run`, `check`, `schema`, `gradient`, `compare`, `describe`, `serve`, `worker`, `key` |
 //! | 9 | [`service`] | how programs come in: HTTP, the queue of jobs, workers, UM-Bridge, the page |
 //! | 8 | [`study`] | what was asked: study file, checks, the run; the single door for people and programs |
 //! | 7 | [`report`] | the answer as data, tables, figures, page |

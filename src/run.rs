@@ -2,6 +2,10 @@
 //!
 //! Nothing here measures time; costs are counts, so that they can be tested and compared between machines.
 
+mod pace;
+
+pub use pace::Pace;
+
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign};
 use std::sync::Arc;
@@ -49,6 +53,13 @@ pub enum Event {
     Stage {
         /// What is done now, in words.
         name: String,
+    },
+    /// Of many computations some are done.
+    Part {
+        /// Done so far.
+        done: usize,
+        /// All.
+        total: usize,
     },
     /// One design was simulated.
     Simulated {
@@ -112,6 +123,37 @@ pub trait Store: Sync {
     fn load(&self, name: &str) -> Option<Vec<u8>>;
     /// Replaces what is saved under a name; a failure only costs the chance to resume.
     fn save(&self, name: &str, what: &[u8]);
+    /// Like [`Store::load`], for what stays when the computation is done, so that another one need not compute it again.
+    fn recall(&self, name: &str) -> Option<Vec<u8>> {
+        self.load(name)
+    }
+    /// Like [`Store::save`], for what stays.
+    fn keep(&self, name: &str, what: &[u8]) {
+        self.save(name, what);
+    }
+}
+
+/// Part of a store: every name gets a word before it, so that computations of one kind do not meet.
+pub struct Within<'r> {
+    /// The store.
+    pub store: &'r dyn Store,
+    /// The word.
+    pub prefix: String,
+}
+
+impl Store for Within<'_> {
+    fn load(&self, name: &str) -> Option<Vec<u8>> {
+        self.store.load(&format!("{}{name}", self.prefix))
+    }
+    fn save(&self, name: &str, what: &[u8]) {
+        self.store.save(&format!("{}{name}", self.prefix), what);
+    }
+    fn recall(&self, name: &str) -> Option<Vec<u8>> {
+        self.store.recall(&format!("{}{name}", self.prefix))
+    }
+    fn keep(&self, name: &str, what: &[u8]) {
+        self.store.keep(&format!("{}{name}", self.prefix), what);
+    }
 }
 
 /// Forgets.
@@ -125,15 +167,57 @@ impl Store for NoStore {
     fn save(&self, _: &str, _: &[u8]) {}
 }
 
-/// Files `<name>.checkpoint` in a folder. A file is written beside its place and moved there, so it is whole at any time.
+/// Files `<name>.checkpoint` in a folder, and `kept/<name>` for what stays. A file is written beside its place and moved there, so
+/// it is whole at any time.
 #[derive(Debug, Clone)]
 pub struct FolderStore(pub std::path::PathBuf);
 
 impl FolderStore {
     const ENDING: &str = "checkpoint";
+    const KEPT: &str = "kept";
 
     fn path(&self, name: &str) -> std::path::PathBuf {
         self.0.join(format!("{name}.{}", Self::ENDING))
+    }
+
+    fn kept(&self, name: &str) -> std::path::PathBuf {
+        self.0.join(Self::KEPT).join(name)
+    }
+
+    /// Forgets what stays, too.
+    pub fn forget(&self) {
+        self.clear();
+        self.forget_kept();
+    }
+
+    /// Forgets what stays unless it was kept under the same word: that of the program, whose next build may compute other numbers.
+    pub fn kept_by(&self, word: &str) {
+        let by = self.kept("kept-by");
+        if std::fs::read(&by).is_ok_and(|found| found == word.as_bytes()) {
+            return;
+        }
+        if self.0.join(Self::KEPT).exists() {
+            self.forget_kept();
+        }
+        self.keep("kept-by", word.as_bytes());
+    }
+
+    fn forget_kept(&self) {
+        match std::fs::remove_dir_all(self.0.join(Self::KEPT)) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                eprintln!("warning: {}: {e}", self.0.join(Self::KEPT).display());
+            }
+            _ => {}
+        }
+    }
+
+    fn write(path: &std::path::Path, beside: &std::path::Path, what: &[u8], lost: &str) {
+        let folder = path.parent().map_or(Ok(()), std::fs::create_dir_all);
+        let done =
+            folder.and_then(|()| std::fs::write(beside, what)).and_then(|()| std::fs::rename(beside, path));
+        if let Err(e) = done {
+            eprintln!("warning: {lost}: {}: {e}", path.display());
+        }
     }
 
     /// Removes all checkpoints: the computation is done, or is to start afresh.
@@ -154,11 +238,17 @@ impl Store for FolderStore {
     }
 
     fn save(&self, name: &str, what: &[u8]) {
-        let (path, beside) = (self.path(name), self.0.join(format!("{name}.unfinished")));
-        let done = std::fs::write(&beside, what).and_then(|()| std::fs::rename(&beside, &path));
-        if let Err(e) = done {
-            eprintln!("warning: this run cannot be resumed: {}: {e}", path.display());
-        }
+        let beside = self.0.join(format!("{name}.unfinished"));
+        Self::write(&self.path(name), &beside, what, "this run cannot be resumed");
+    }
+
+    fn recall(&self, name: &str) -> Option<Vec<u8>> {
+        std::fs::read(self.kept(name)).ok()
+    }
+
+    fn keep(&self, name: &str, what: &[u8]) {
+        let beside = self.0.join(format!("{name}.unfinished"));
+        Self::write(&self.kept(name), &beside, what, "this will be computed again");
     }
 }
 

@@ -13,6 +13,18 @@ pub fn tidy(value: f64) -> f64 {
     format!("{value:.10e}").parse().unwrap_or(value)
 }
 
+/// A text that begins with a number, cut behind it: `"75 um"` into `"75"` and `"um"`. Whether the first part is a number is left open.
+pub fn split(text: &str) -> (&str, &str) {
+    let text = text.trim();
+    let is_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | 'e' | 'E');
+    let mut end = text.find(|c| !is_number(c)).unwrap_or(text.len());
+    // An exponent needs digits: the 'e' of no unit is eaten.
+    while end > 0 && !text[..end].ends_with(|c: char| c.is_ascii_digit() || c == '.') {
+        end -= 1;
+    }
+    (&text[..end], text[end..].trim())
+}
+
 /// A unit: name, size in SI units, and offset in SI units (temperatures).
 pub type Unit = (&'static str, f64, f64);
 
@@ -66,13 +78,7 @@ impl<D: Dimension> FromStr for Measure<D> {
 
     fn from_str(text: &str) -> Result<Self, UnitError> {
         let trimmed = text.trim();
-        let is_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | 'e' | 'E');
-        let mut end = trimmed.find(|c| !is_number(c)).unwrap_or(trimmed.len());
-        // An exponent needs digits: the 'e' of no unit is eaten.
-        while end > 0 && !trimmed[..end].ends_with(|c: char| c.is_ascii_digit() || c == '.') {
-            end -= 1;
-        }
-        let (number, unit) = (&trimmed[..end], trimmed[end..].trim());
+        let (number, unit) = split(trimmed);
         let value: f64 = number.parse().map_err(|_| Self::error(""))?;
         if unit.is_empty() {
             return Err(Self::error(format!("; \"{trimmed}\" has no unit")));

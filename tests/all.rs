@@ -8,6 +8,7 @@ mod cli;
 mod common;
 mod comparison;
 mod curvature;
+mod describe;
 mod every_parameter;
 mod film_derivatives;
 mod gradient_check;
@@ -19,11 +20,15 @@ mod orbits;
 mod own_model;
 mod own_problem;
 mod recording;
+mod reports;
 mod resume;
+mod runner;
 mod running_in;
 mod running_in_gradients;
 mod sensitivity;
 mod service;
+mod side_by_side;
+mod studies;
 mod study_physics;
 
 #[global_allocator]

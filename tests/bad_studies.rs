@@ -279,6 +279,41 @@ fn mistakes_in_a_comparison_have_their_words() {
     insta::assert_snapshot!(list.join("\n"));
 }
 
+/// What a study says about itself, and experiments.
+const ABOUT: &[&str] = &[
+    "[coarse]\n\"film.cells\" = 40\n\"bearings.big_end.width\" = \"40 kg\"\n",
+    "[coarse]\n\"parameters[9].lower\" = \"4 mm\"\n",
+    "[expected]\n\"objective.optimum.total_w\" = 1436.0\n",
+    "[expected]\n\"a\" = { coarse = 1.0 }\n\"b\" = { value = [1.0], within = 0.1 }\n\"c\" = { value = 1.0, relative = 0.1, absolute = -1.0 }\n",
+    "[experiments]\nplan = \"random\"\neach = \"optimise\"\n",
+    "[experiments]\nruns = 10\nseed = 3\nfactors = []\n",
+    "[experiments]\nplan = \"sobol\"\n[[experiments.factors]]\nkey = \"film.cells_around\"\nlower = 40\nupper = 80\nlevels = 3\n",
+    "[experiments]\n[[experiments.factors]]\nkey = \"film.cells_around\"\n",
+    "[experiments]\n[[experiments.factors]]\nkey = \"film.cells_around\"\nvalues = [40]\n",
+    "[experiments]\n[[experiments.factors]]\nkey = \"film.cells_around\"\nlower = 80\nupper = 40\nlevels = 1\n",
+    "[experiments]\n[[experiments.factors]]\nkey = \"bearings.big_end.width\"\nlower = \"40 mm\"\nupper = \"0.05 m\"\nlevels = 3\n",
+    "[experiments]\n[[experiments.factors]]\nkey = \"film.cells\"\nvalues = [40, 50, 60]\n",
+    "[experiments]\n[[experiments.factors]]\nkey = \"bearings.big_end.width\"\nvalues = [\"50 mm\", \"80 mm\", \"90 mm\"]\n",
+    "[experiments]\n[[experiments.factors]]\nkey = \"film.cells_around\"\nvalues = [40, 50, 70]\nrefinement = true\n",
+    "[experiments]\n[[experiments.factors]]\nkey = \"film.cells_around\"\nvalues = [40, 80]\nrefinement = true\n[[experiments.factors]]\nkey = \"film.cells_around\"\nvalues = [40, 50]\n",
+    "[experiments]\n[[experiments.factors]]\nname = \"mesh\"\nkey = \"film.cells_around\"\noptions = [{ name = \"coarse\" }]\n",
+    "[experiments]\n[[experiments.factors]]\nkey = \"film.cells_around\"\nlower = 40\nupper = 9000\nlevels = 3000\nspacing = \"even\"\n",
+    "[experiments]\n[[experiments.factors]]\nkey = \"film.cells_around\"\nvalues = [40, 50]\n[comparison]\n",
+];
+
+#[test]
+fn mistakes_in_what_a_study_says_about_itself_have_their_words() {
+    let main = main_text();
+    let one = |to: &&str| {
+        let text = main.replacen("[oil]", &format!("{to}[oil]"), 1);
+        let list = errors(&merged_head(&text)).faults;
+        let list: Vec<String> = list.iter().map(|f| format!("    {}: {}", f.path, f.message)).collect();
+        format!("{to:?}\n{}", list.join("\n"))
+    };
+    let list: Vec<String> = ABOUT.iter().map(one).collect();
+    insta::assert_snapshot!(list.join("\n"));
+}
+
 /// The text with sections put together, keys in front of the first section kept.
 fn merged_head(text: &str) -> String {
     let head: String = text.lines().take_while(|l| !l.starts_with('[')).map(|l| format!("{l}\n")).collect();

@@ -371,7 +371,7 @@ fn a_running_in_design_goes_on_where_it_was_stopped_to_the_same_report() {
     let study = running_in_study(asked, "", &[("steps_per_cycle = 240", "steps_per_cycle = 120")]);
     let run = |store: &Killed| {
         let mut report = quietly(|context| stribeck::study::run_saved(&study, context, store)).report;
-        report.cost.seconds = 0.0;
+        report.timing.seconds = 0.0;
         report
     };
     let whole = run(&Killed::default());

@@ -1,14 +1,14 @@
-//! The four commands.
+//! The commands but `run`, and what all of them share.
 
 use super::progress::Bars;
 use super::{
-    CheckArguments, EXIT_FILE, EXIT_INCOMPLETE, EXIT_STUDY, EXIT_WRONG_GRADIENT, GradientArguments,
-    RunArguments, SchemaArguments, exit_code, faults, proof_tables, tables,
+    CheckArguments, EXIT_FILE, EXIT_STUDY, EXIT_WRONG_GRADIENT, GradientArguments, ReportChoice,
+    SchemaArguments, exit_code, faults, proof_tables, tables,
 };
 use crate::optimise::EvaluationError;
-use crate::report::{self, ComparisonStatus};
-use crate::run::{Cancel, FolderStore, RunContext};
-use crate::study::{Answer, Format, Study, StudyErrors, Sweep, Task, answer, compare_engines, prove};
+use crate::report;
+use crate::run::{Cancel, RunContext};
+use crate::study::{Format, Reading, Study, StudyErrors, Sweep, compare_engines, prove};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -51,18 +51,19 @@ impl Stop {
 }
 
 /// Prints to standard output; a closed pipe is the reader's choice, not an error.
-fn put(text: &str) {
+pub(super) fn put(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
-fn read(path: &Path, json: bool) -> Result<Study, Stop> {
+/// Reads a study; tables in files are looked for beside it.
+pub(super) fn read(path: &Path, with: Reading<'_>, json: bool) -> Result<Study, Stop> {
     let text = std::fs::read_to_string(path).map_err(|e| Stop::File(path.to_owned(), e))?;
-    let base = path.parent().unwrap_or(Path::new("."));
-    Study::read(&text, Format::of_path(path), Some(base)).map_err(|e| Stop::Study(path.to_owned(), e, json))
+    let with = Reading { base: Some(path.parent().unwrap_or(Path::new("."))), ..with };
+    Study::read_with(&text, Format::of_path(path), &with).map_err(|e| Stop::Study(path.to_owned(), e, json))
 }
 
 /// A flag that Ctrl-C raises; a second Ctrl-C ends the process at once.
-fn cancel_on_ctrl_c() -> Cancel {
+pub(super) fn cancel_on_ctrl_c() -> Cancel {
     let cancel = Cancel::default();
     let flag = cancel.clone();
     let handler = move || {
@@ -78,62 +79,8 @@ fn cancel_on_ctrl_c() -> Cancel {
     cancel
 }
 
-pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
-    let study = started(read(&a.file, a.json)?, a.start_from.as_deref())?;
-    let name = a.file.file_stem().unwrap_or_default();
-    let folder = a.out.clone().unwrap_or_else(|| Path::new("out").join(name));
-    std::fs::create_dir_all(&folder).map_err(|e| Stop::File(folder.clone(), e))?;
-    let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(study.optimiser.options.settings.max_iterations));
-    let context = RunContext { cancel: &cancel, progress: &bars };
-    let store = FolderStore(folder.clone());
-    if a.fresh {
-        store.clear();
-    }
-    let task = if a.simulate { Task::Simulation } else { Task::Answer };
-    let found = answer(&study, task, context, &store).map_err(Stop::Simulation)?;
-    bars.finish();
-    let files = found.files(false).map_err(|e| Stop::File(folder.clone(), e))?;
-    report::write_folder(&files, &folder).map_err(|e| Stop::File(folder.clone(), e))?;
-    // Only a search leaves checkpoints behind it, and only its own end makes them useless.
-    if task == Task::Answer && matches!(found, Answer::Design(_)) && !found.is_cancelled() {
-        store.clear();
-    }
-    if a.json {
-        put(files.iter().find(|f| f.name == "report.json").map_or("", |f| &f.text));
-    } else {
-        put(&told(&found));
-        put(&format!("report: {}\n", folder.join("report.html").display()));
-    }
-    Ok(code(&found))
-}
-
-/// An answer as tables.
-fn told(found: &Answer) -> String {
-    match found {
-        Answer::Design(found) => tables::summary(&found.report, std::io::stdout().is_terminal()),
-        Answer::Characteristic(found) => tables::characteristic(found),
-        Answer::Comparison(found) => proof_tables::comparison(found),
-        Answer::Gradient(found) => tables::engines(found),
-    }
-}
-
-/// The exit code of an answer.
-fn code(found: &Answer) -> u8 {
-    match found {
-        Answer::Design(found) => exit_code(found.report.outcome.status),
-        Answer::Comparison(found) if found.any_wrong() && found.status != ComparisonStatus::Cancelled => {
-            EXIT_WRONG_GRADIENT
-        }
-        _ => match found.status().as_str() {
-            "cancelled" => exit_code(crate::optimise::Outcome::Cancelled),
-            "incomplete" => EXIT_INCOMPLETE,
-            _ => 0,
-        },
-    }
-}
-
 /// The study, from the design of an earlier report if there is one.
-fn started(study: Study, report: Option<&Path>) -> Result<Study, Stop> {
+pub(super) fn started(study: Study, report: Option<&Path>) -> Result<Study, Stop> {
     let Some(path) = report else { return Ok(study) };
     let unreadable = |e: String| {
         let words = format!("cannot be started from: {e}; give the report.json of an earlier 'stribeck run'");
@@ -147,7 +94,7 @@ fn started(study: Study, report: Option<&Path>) -> Result<Study, Stop> {
 }
 
 pub(super) fn check(a: &CheckArguments) -> Result<u8, Stop> {
-    let study = read(&a.file, a.json)?;
+    let study = read(&a.file, Reading::default(), a.json)?;
     if a.json {
         put(&(serde_json::to_string_pretty(&study.to_json()).unwrap_or_default() + "\n"));
     } else {
@@ -158,13 +105,19 @@ pub(super) fn check(a: &CheckArguments) -> Result<u8, Stop> {
 }
 
 pub(super) fn schema(a: &SchemaArguments) -> Result<u8, Stop> {
-    let schema = if a.report { report::schema() } else { crate::study::schema() };
+    let schema = match a.report {
+        None => crate::study::schema(),
+        Some(ReportChoice::Design) => report::schema::<report::Report>(),
+        Some(ReportChoice::Characteristic) => report::schema::<report::Characteristic>(),
+        Some(ReportChoice::Experiments) => report::schema::<report::Experiments>(),
+        Some(ReportChoice::Comparison) => report::schema::<report::Comparison>(),
+    };
     put(&(serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"));
     Ok(0)
 }
 
 pub(super) fn gradient(a: &GradientArguments) -> Result<u8, Stop> {
-    let study = read(&a.file, a.json)?;
+    let study = read(&a.file, Reading::default(), a.json)?;
     if study.points.is_empty() {
         eprintln!("error: {}: a study that tabulates a characteristic has no gradient", a.file.display());
         return Ok(EXIT_STUDY);
@@ -174,7 +127,7 @@ pub(super) fn gradient(a: &GradientArguments) -> Result<u8, Stop> {
     }
     let engines = a.engine.map_or_else(|| vec![study.engine], super::EngineChoice::engines);
     let sweep = if a.sweep { Sweep::wide() } else { Sweep(vec![study.perturbation]) };
-    let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(0));
+    let (cancel, bars) = (cancel_on_ctrl_c(), Bars::alone(0, study.optimiser.options.settings.tolerance));
     let context = RunContext { cancel: &cancel, progress: &bars };
     let result = compare_engines(&study, &engines, &sweep, context);
     bars.finish();
@@ -189,7 +142,7 @@ pub(super) fn gradient(a: &GradientArguments) -> Result<u8, Stop> {
 
 /// Proves the gradient and says what was found.
 fn checked(study: &Study, a: &GradientArguments) -> Result<u8, Stop> {
-    let (cancel, bars) = (cancel_on_ctrl_c(), Bars::new(0));
+    let (cancel, bars) = (cancel_on_ctrl_c(), Bars::alone(0, study.optimiser.options.settings.tolerance));
     let context = RunContext { cancel: &cancel, progress: &bars };
     let result = prove(study, &study.check_perturbations(), context);
     bars.finish();

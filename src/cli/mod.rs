@@ -1,15 +1,23 @@
-//! The command line: `stribeck run | check | schema | gradient | serve | worker | key`.
+//! The command line: `stribeck run | check | schema | gradient | compare | describe | serve | worker | key`.
 //!
 //! Answers go to standard output, progress and errors to standard error. Colours and progress bars appear on terminals
 //! only. Exit codes are part of the interface, see [`exit_code`].
 
 mod commands;
+mod compare;
+mod describe;
 mod design_tables;
+mod dry_run;
+mod experiment_tables;
 mod faults;
 mod progress;
 mod proof_tables;
+mod run;
 mod serve;
+mod stamp;
+mod summaries;
 mod tables;
+mod told;
 
 use crate::gradient::EngineName;
 use crate::optimise::Outcome;
@@ -27,6 +35,9 @@ pub const EXIT_INCOMPLETE: u8 = 8;
 
 /// Exit code for a gradient that is wrong.
 pub const EXIT_WRONG_GRADIENT: u8 = 9;
+
+/// Exit code for a figure that the study expects and that was not found.
+pub const EXIT_EXPECTED: u8 = 11;
 
 /// Exit code of an outcome: 0 only for a converged design, and for a simulation that was asked for.
 pub fn exit_code(outcome: Outcome) -> u8 {
@@ -47,8 +58,8 @@ pub fn exit_code(outcome: Outcome) -> u8 {
 #[command(
     name = "stribeck",
     version,
-    after_help = "Exit codes: 0 converged (or simulated, where no more was asked), 1 file error, 2 mistakes in the study or command line, \
-3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 8 rows of a characteristic or parts of a comparison are missing, 9 a checked gradient is wrong, 10 budget spent, 130 cancelled."
+    after_help = "Exit codes: 0 converged (or simulated, where no more was asked), 1 file error, 2 mistakes in the study or command line, or reports that cannot be compared, \
+3 almost converged, 4 iteration limit, 5 no progress, 6 infeasible, 7 start design cannot be simulated, 8 rows of a characteristic or parts of a comparison are missing, 9 a checked gradient is wrong, 10 budget spent, 11 a figure that the study expects is missed, 130 cancelled."
 )]
 struct Arguments {
     /// Threads to use [default: one per core]. The numbers do not depend on it.
@@ -60,41 +71,24 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Finds the design with the least loss (or tabulates a characteristic, or compares the gradient engines) and writes a report.
-    Run(RunArguments),
+    /// Finds the design with the least loss (or tabulates, experiments, or compares the gradient engines) and writes a report; for one study, several or a folder.
+    Run(Box<run::RunArguments>),
     /// Checks a study and prints it with every default written out.
     Check(CheckArguments),
     /// Prints the JSON Schema of the study file, or of the report.
     Schema(SchemaArguments),
     /// Computes the gradient at the start design, with one engine or all five side by side, or checks it.
     Gradient(GradientArguments),
+    /// Compares two reports of the same kind: what differs in the answer, and which inputs differ.
+    Compare(compare::CompareArguments),
+    /// Lists laws with their sources, gradient engines, quantities, parameters or search methods.
+    Describe(describe::DescribeArguments),
     /// Serves jobs over HTTP, with workers inside.
     Serve(serve::ServeArguments),
     /// Works on the jobs of a database that other processes serve.
     Worker(serve::WorkerArguments),
     /// Makes, lists and takes back keys of the service.
     Key(serve::KeyArguments),
-}
-
-#[derive(Debug, Args)]
-struct RunArguments {
-    /// Study file, TOML or JSON.
-    file: PathBuf,
-    /// Folder for report.html, report.json and CSV files [default: out/<name of the study file>].
-    #[arg(long, value_name = "FOLDER")]
-    out: Option<PathBuf>,
-    /// Start from the design in the report.json of an earlier run, of this study or another with the same parameters.
-    #[arg(long, value_name = "REPORT")]
-    start_from: Option<PathBuf>,
-    /// Start over, even if an earlier run of this study was stopped in the same folder; without it, a run goes on from there.
-    #[arg(long)]
-    fresh: bool,
-    /// Simulate the start design only, and run it in if the study says how.
-    #[arg(long, conflicts_with_all = ["start_from", "fresh"])]
-    simulate: bool,
-    /// Print the report as JSON instead of a table.
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -108,9 +102,17 @@ struct CheckArguments {
 
 #[derive(Debug, Args)]
 struct SchemaArguments {
-    /// Print the schema of report.json instead.
-    #[arg(long)]
-    report: bool,
+    /// Print the schema of report.json instead: of a design (default), or of another kind of answer.
+    #[arg(long, value_enum, num_args = 0..=1, default_missing_value = "design", value_name = "KIND")]
+    report: Option<ReportChoice>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ReportChoice {
+    Design,
+    Characteristic,
+    Experiments,
+    Comparison,
 }
 
 #[derive(Debug, Args)]
@@ -165,10 +167,12 @@ pub fn main() -> ExitCode {
         crate::run::use_threads(count);
     }
     let code = match &arguments.command {
-        Command::Run(a) => commands::run(a),
+        Command::Run(a) => run::run(a),
         Command::Check(a) => commands::check(a),
         Command::Schema(a) => commands::schema(a),
         Command::Gradient(a) => commands::gradient(a),
+        Command::Compare(a) => compare::compare(a),
+        Command::Describe(a) => describe::describe(a),
         Command::Serve(a) => Ok(serve::run_service(a)),
         Command::Worker(a) => Ok(serve::run_worker(a)),
         Command::Key(a) => Ok(serve::run_keys(a)),

@@ -76,7 +76,7 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
         report.kkt.residual.map_or_else(|| "-".to_owned(), |r| format!("{r:.1e}")),
         report.cost.total.simulations,
         report.cost.gradient_calls,
-        short(report.cost.seconds)
+        short(report.timing.seconds)
     );
     if let Some(steps) = report.kkt.polish_steps {
         text += &format!("polished by {steps} Newton step{}\n", if steps == 1 { "" } else { "s" });
@@ -161,7 +161,7 @@ fn rivals(report: &Report) -> Table {
         "as simulations",
         "time [s]",
     ]);
-    for r in &report.rivals {
+    for (k, r) in report.rivals.iter().enumerate() {
         let small = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.1e}"));
         rivals.add_row([
             r.method.words().to_owned(),
@@ -177,7 +177,7 @@ fn rivals(report: &Report) -> Table {
             short(r.simulations),
             r.gradient_calls.to_string(),
             short(r.gradient_simulations),
-            short(r.seconds),
+            maybe(report.timing.rivals_s.get(k).copied()),
         ]);
     }
     rivals

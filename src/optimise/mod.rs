@@ -85,10 +85,11 @@ mod qp;
 mod quasi_newton;
 mod record;
 mod robust;
+mod spread;
 mod sqp;
 #[cfg(test)]
 mod sqp_tests;
-mod starts;
+
 mod state;
 mod worst;
 
@@ -102,7 +103,7 @@ pub use outcome::Outcome;
 pub use polish::{Polished, polish};
 pub use problem::{ConstrainedProblem, Curved, EvaluationError, ManyObjectives, Slopes, Values};
 pub use robust::{Margins, Robust};
+pub use spread::{latin_hypercube, sobol};
 pub use sqp::{Sqp, SqpOptions, minimise};
-pub use starts::latin_hypercube;
 pub use state::{Multipliers, SqpState};
 pub use worst::search_worst;

@@ -5,7 +5,7 @@
 use super::csv_file::written;
 use super::figures;
 use super::html::{STYLE, environment};
-use super::{Assumption, Files, Provenance, ReportFile};
+use super::{Assumption, ExpectedReport, Files, Provenance, ReportFile, ReportTiming};
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 use schemars::JsonSchema;
@@ -50,8 +50,10 @@ pub struct Characteristic {
     pub reference_source: Option<String>,
     /// One table per bearing, and one of the shaft where torques add up.
     pub tables: Vec<CharacteristicTable>,
-    /// Wall time, s. The only number that differs between reruns.
-    pub seconds: f64,
+    /// Figures the study expects, held against what was found.
+    pub expected: Vec<ExpectedReport>,
+    /// What depends on the machine and differs between reruns. Nothing else does.
+    pub timing: ReportTiming,
     /// What is assumed and why.
     pub assumptions: Vec<Assumption>,
     /// What this rests on.

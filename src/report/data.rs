@@ -27,6 +27,8 @@ pub struct Report {
     pub question: Option<String>,
     /// How it ended.
     pub outcome: OutcomeReport,
+    /// The answer in sentences: what the design loses and saves, what holds it back, what is not met.
+    pub answer: Vec<String>,
     /// The design found.
     pub design: Vec<DesignValue>,
     /// The objective before and after.
@@ -59,10 +61,39 @@ pub struct Report {
     pub choices: Option<ChoicesReport>,
     /// Work done.
     pub cost: CostReport,
+    /// Figures the study expects, held against what was found.
+    pub expected: Vec<ExpectedReport>,
+    /// What depends on the machine and differs between reruns. Nothing else does.
+    pub timing: ReportTiming,
     /// What is assumed and why.
     pub assumptions: Vec<Assumption>,
     /// What this rests on.
     pub provenance: Provenance,
+}
+
+/// A figure that a study expects.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ExpectedReport {
+    /// Its path in this report.
+    pub figure: String,
+    /// What is expected there.
+    pub expected: serde_json::Value,
+    /// How far a number may be away, in its unit; none for words.
+    pub tolerance: Option<f64>,
+    /// What was found; null if there is nothing.
+    pub found: serde_json::Value,
+    /// Whether it is near enough.
+    pub met: bool,
+}
+
+/// Wall times.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct ReportTiming {
+    /// The whole study, s.
+    pub seconds: f64,
+    /// The searches by other methods in the order of `rivals`, s; absent without.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rivals_s: Vec<f64>,
 }
 
 /// End of the search.
@@ -353,8 +384,6 @@ pub struct CostReport {
     pub gradients: Cost,
     /// Gradient calls.
     pub gradient_calls: u64,
-    /// Wall time, s. The only number that differs between reruns.
-    pub seconds: f64,
 }
 
 /// Something that is not known.
@@ -377,6 +406,10 @@ pub struct Provenance {
     pub version: String,
     /// Laws and methods used, with their sources.
     pub methods: Vec<String>,
+    /// Where they are published.
+    pub references: Vec<String>,
+    /// Whether the study's coarse setting was used.
+    pub coarse: bool,
     /// Hash of the study in whose report the starts were found; none if they are the study's own.
     pub started_from: Option<String>,
     /// The study with every default written out.

@@ -11,6 +11,9 @@ use serde::Serialize;
 const PLAIN: &str = "<!doctype html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{{ title }}</title>\n\
     <style>{{ style|safe }}</style></head>\n<body><header><h1>{{ title }}</h1></header>\n<main><pre>{{ text }}</pre></main></body>\n</html>\n";
 const TEMPLATE: &str = include_str!("report.html.j2");
+/// Beginning and end of all reports.
+const HEAD: &str = include_str!("head.html.j2");
+const FOOT: &str = include_str!("foot.html.j2");
 /// Style of all pages.
 pub(super) const STYLE: &str = include_str!("style.css");
 
@@ -181,10 +184,15 @@ pub fn plain_page(title: &str, text: &str) -> Result<String, minijinja::Error> {
 /// What all templates can use.
 pub(super) fn environment() -> Environment<'static> {
     let mut environment = Environment::new();
+    for (name, text) in [("head", HEAD), ("foot", FOOT)] {
+        environment.add_template(name, text).expect("the templates of this program are well written");
+    }
     environment.set_auto_escape_callback(|_| minijinja::AutoEscape::Html);
     environment.add_filter("sig", significant);
     environment.add_filter("sci", |v: f64| format!("{v:.1e}"));
     environment.add_filter("units", units);
+    environment.add_filter("plain", plain);
+    environment.add_filter("link", link);
     environment.add_filter("words", |s: String| s.replace('-', " "));
     environment
 }
@@ -197,4 +205,21 @@ pub(super) fn units(unit: &str) -> String {
 /// A number with four significant digits, or a dash for none.
 fn significant(value: Value) -> String {
     f64::try_from(value).map_or_else(|_| "–".to_owned(), super::short)
+}
+
+/// A value as it is: numbers with six significant digits, so that a miss can be seen.
+fn plain(value: Value) -> String {
+    match f64::try_from(value.clone()) {
+        Ok(number) if value.kind() == minijinja::value::ValueKind::Number => {
+            format!("{}", format!("{number:.5e}").parse::<f64>().unwrap_or(number))
+        }
+        _ if value.is_none() || value.is_undefined() => "–".to_owned(),
+        _ => value.to_string(),
+    }
+}
+
+/// A file name as it stands in a link.
+fn link(name: &str) -> String {
+    let kept = |b: u8| b.is_ascii_alphanumeric() || b"._-".contains(&b);
+    name.bytes().map(|b| if kept(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect()
 }

@@ -98,15 +98,16 @@ fn map(c: &Curves, field: &[Vec<f64>], scale: Scale, frame: Frame, label: &str, 
     unwrapped(c.width_mm, cut, field, scale, frame, (label, name))
 }
 
-/// Depth worn off a shell or a journal, cut where it does not wear.
+/// Depth worn off a shell or a journal, both in one scale of colours, cut where it does not wear.
 pub fn wear_map(b: &BearingRunningIn, frame: Frame, name: &str) -> Option<String> {
     let depth_um = match frame {
         Frame::Shell => &b.wear_depth_um,
         Frame::Journal => &b.journal_wear_depth_um,
     };
-    let top = depth_um.iter().flatten().copied().fold(0.0f64, f64::max);
+    let deepest = |field: &[Vec<f64>]| field.iter().flatten().copied().fold(0.0f64, f64::max);
+    let top = deepest(&b.wear_depth_um).max(deepest(&b.journal_wear_depth_um));
     let words = ("wear depth [µm]", name);
-    (top > 0.0).then(|| {
+    (deepest(depth_um) > 0.0).then(|| {
         let (field, scale) = (depth_um, Scale::upwards(top));
         unwrapped(b.width_mm, cut(field), field, scale, frame, words)
     })

@@ -7,12 +7,16 @@ mod characteristic;
 mod comparison;
 mod csv_file;
 mod data;
+mod experiments;
 mod figures;
+mod headline;
 mod html;
+mod index;
 mod maps;
 mod run_in_figures;
 mod running_in;
 mod searches;
+mod side_by_side;
 mod svg;
 mod vtk;
 
@@ -27,7 +31,14 @@ pub use comparison::{
 };
 pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
+pub use experiments::{
+    EXPERIMENTS_FORMAT, EffectReport, ExperimentRun, Experiments, ExperimentsStatus, FactorReport,
+    RefinementReport, ResponseReport, effects, experiments_csv, experiments_files, experiments_html,
+    refinements,
+};
+pub use headline::headline;
 pub use html::{html, plain_page};
+pub use index::{IndexEntry, index_html};
 pub use running_in::{
     ApproximationReport, BearingRunningIn, BeforeAfter, CycleState, MinimisedReport, ProfileReport,
     RunningInBlock, RunningInGradientReport, RunningInReport, StageReport, StribeckPoint, WearLimitReport,
@@ -37,13 +48,18 @@ pub use searches::{
     ChoiceReport, ChoiceRun, ChoicesReport, LinearReport, LocalOptimum, ParetoPoint, ParetoReport, RivalRun,
     RobustReport, SampledLimit, StartRun, StartsReport, ToleranceReport, WorstCaseReport, pareto_csv,
 };
+pub use side_by_side::{
+    CasePair, ColumnPair, DesignPair, LeafComparison, LeafDifference, LimitPair, LimitSide, LimitState,
+    NumberPair, ReportHead, SIDE_BY_SIDE_FORMAT, Side, SideBySide, TablePair, TextPair, side_by_side,
+    side_by_side_files, side_by_side_html,
+};
 pub use vtk::film_vtk;
 
 use std::path::Path;
 
-/// JSON Schema (2020-12) of `report.json`.
-pub fn schema() -> serde_json::Value {
-    schemars::schema_for!(Report).to_value()
+/// JSON Schema (2020-12) of the `report.json` of an answer.
+pub fn schema<T: schemars::JsonSchema>() -> serde_json::Value {
+    schemars::schema_for!(T).to_value()
 }
 
 /// One file of a report.

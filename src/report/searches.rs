@@ -77,8 +77,6 @@ pub struct RivalRun {
     pub gradient_calls: u64,
     /// Work of the gradients in units of a simulation, by factorisations.
     pub gradient_simulations: f64,
-    /// Wall time, s.
-    pub seconds: f64,
 }
 
 /// A choice and the option that was taken.

@@ -19,6 +19,8 @@ pub struct Limits {
     pub parameters: usize,
     /// Bearings times operating points.
     pub cases: usize,
+    /// Runs of experiments.
+    pub experiments: usize,
     /// Jobs of one key that wait or run.
     pub open_jobs: i64,
     /// Jobs in one batch.
@@ -41,6 +43,7 @@ impl Default for Limits {
             memory_bytes: 1_000_000_000,
             parameters: 1000,
             cases: 64,
+            experiments: 200,
             open_jobs: 20_000,
             batch: 1000,
             requests_per_s: Some(200),
@@ -71,18 +74,30 @@ impl Limits {
             "MB of memory",
         );
         most(study.parameters.len(), self.parameters, "parameters", "parameters");
-        let cases = study.bearings.len() * study.points.len().max(1);
-        most(cases, self.cases, "objective.operating_points", "bearings times operating points");
+        most(cases(study), self.cases, "objective.operating_points", "bearings times operating points");
+        most(study.experiments().count(), self.experiments, "experiments", "runs");
+        // A factor may make a study of the experiments larger than the one it is made of.
+        if let Some((run, beyond)) = study
+            .experiments()
+            .enumerate()
+            .find_map(|(k, of)| Some((k + 1, self.exceeded_by(of).into_iter().next()?)))
+        {
+            all.push(("experiments".to_owned(), format!("run {run}: {}: {}", beyond.0, beyond.1)));
+        }
         all
     }
 
     /// Whether a study is small enough to be computed while the caller waits.
     pub fn is_direct(&self, study: &Study) -> bool {
-        let cases = study.bearings.len() * study.points.len().max(1);
-        (cells(study) * study.orbit.steps * cases) as f64 <= self.direct_work
+        (cells(study) * study.orbit.steps * cases(study)) as f64 <= self.direct_work
     }
 }
 
 fn cells(study: &Study) -> usize {
     study.film.cells_around * 2 * study.film.cells_across_half
+}
+
+/// Bearings times operating points.
+fn cases(study: &Study) -> usize {
+    study.bearings.len() * study.points.len().max(1)
 }

@@ -9,6 +9,7 @@ use crate::film::{FilmSite, SteadyState, steady_at};
 use crate::orbit::{Orbit, settle};
 use crate::report::{
     CHARACTERISTIC_FORMAT, Characteristic, CharacteristicColumn, CharacteristicStatus, CharacteristicTable,
+    ReportTiming,
 };
 use crate::run::{Event, RunContext};
 use std::f64::consts::TAU;
@@ -45,7 +46,8 @@ pub fn characterise(study: &Study, context: RunContext<'_>) -> Option<Characteri
         failures: work.failures,
         reference_source: plan.source.clone(),
         tables,
-        seconds: began.elapsed().as_secs_f64(),
+        expected: Vec::new(),
+        timing: ReportTiming { seconds: began.elapsed().as_secs_f64(), rivals_s: Vec::new() },
         assumptions: assumptions(study),
         provenance: provenance(study),
     })

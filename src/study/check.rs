@@ -2,12 +2,13 @@
 
 use super::bearings::{Bearings, Frame};
 use super::characteristic::CharacteristicPlan;
-use super::choices::{self, Choices, List};
+use super::choices::Choices;
 use super::comparison::ComparisonPlan;
-use super::document::{Format, parse};
-use super::faults::{Fault, Faults, StudyErrors, line_of, without_nulls};
+use super::expected::ExpectedPlan;
+use super::faults::{Faults, without_nulls};
 use super::file::{FilmModelName, StudyFile};
 use super::hash::sha256;
+use super::layout::ExperimentsPlan;
 use super::linear::{LinearPlan, linear_constraints};
 use super::oil::OilUse;
 use super::pareto::ParetoPlan;
@@ -22,7 +23,6 @@ use super::{
 use crate::cranktrain::{BearingParameter, Cylinder, VeeEngine};
 use crate::gradient::EngineName;
 use crate::orbit::OrbitOptions;
-use serde::Deserialize;
 use std::path::Path;
 
 /// Cycles that are held in memory at a time, per bearing and operating point.
@@ -69,6 +69,10 @@ pub struct Study {
     pub(super) robust: Option<RobustPlan>,
     pub(super) running_in: Option<RunningInPlan>,
     pub(super) choices: Option<Choices>,
+    pub(super) experiments: Option<ExperimentsPlan>,
+    pub(super) expected: Vec<ExpectedPlan>,
+    /// Whether it was read with its coarse setting.
+    pub coarse: bool,
     /// Hash of the study whose design the starts are.
     pub(super) started_from: Option<String>,
     pub(super) cylinder: Option<Cylinder>,
@@ -76,50 +80,19 @@ pub struct Study {
 }
 
 impl Study {
-    /// Reads and checks a study. Tables in files are looked for below `base`; without a base no file is read.
-    pub fn read(text: &str, format: Format, base: Option<&Path>) -> Result<Self, StudyErrors> {
-        let (value, spans) = parse(text, format).map_err(|errors| {
-            let faults = errors.into_iter().map(|(message, span)| Fault {
-                path: String::new(),
-                message,
-                line: Some(line_of(text, span.start)),
-                span: Some(span),
-            });
-            StudyErrors { faults: faults.collect(), text: text.to_owned() }
-        })?;
-        let mut faults = Faults::of(value.clone());
-        let study = match StudyFile::deserialize(value.clone()) {
-            Ok(file) => {
-                let lists: Vec<List> = choices::lists(&file, &mut faults);
-                check(file, base, &mut faults).map(|study| {
-                    let choices = choices::choices(lists, &value, base, &mut faults);
-                    Self { choices, ..study }
-                })
-            }
-            Err(e) => {
-                faults.add("", format!("the file must be a table of sections ({e})"));
-                None
-            }
-        };
-        if let (Some(study), false) = (study, faults.any()) {
-            return Ok(study);
-        }
-        let mut faults: Vec<Fault> = faults
-            .into_list()
-            .into_iter()
-            .map(|(path, message)| {
-                let span = spans.find(&path);
-                Fault { line: span.as_ref().map(|s| line_of(text, s.start)), path, message, span }
-            })
-            .collect();
-        faults.sort_by_key(|f| f.line);
-        faults.dedup();
-        Err(StudyErrors { faults, text: text.to_owned() })
+    /// The same without the studies that are made of it.
+    pub(super) fn alone(&self) -> Self {
+        Self { choices: None, experiments: None, ..self.clone() }
+    }
+
+    /// The studies of its experiments, if it has any.
+    pub fn experiments(&self) -> impl Iterator<Item = &Study> {
+        self.experiments.iter().flat_map(|plan| plan.runs.iter().map(|run| &run.study))
     }
 
     /// The same with nothing to search: its start design is the answer.
     pub(super) fn without_search(&self) -> Self {
-        let mut study = Self { pareto: None, robust: None, choices: None, worst_case: false, ..self.clone() };
+        let mut study = Self { pareto: None, robust: None, worst_case: false, ..self.alone() };
         study.optimiser.rivals.clear();
         if let Some(running_in) = &mut study.running_in {
             running_in.minimise = None;
@@ -127,9 +100,14 @@ impl Study {
         study
     }
 
-    /// Whether a design is searched; otherwise the study asks for a table, or a comparison of gradient engines.
+    /// Whether a design is searched; otherwise the study asks for a table, experiments, or a comparison of gradient engines.
     pub fn searches(&self) -> bool {
-        !self.points.is_empty() && self.comparison.is_none()
+        !self.points.is_empty() && self.comparison.is_none() && self.experiments.is_none()
+    }
+
+    /// Whether it compares times, which others must not disturb.
+    pub fn measures_time(&self) -> bool {
+        self.comparison.is_some() || !self.optimiser.rivals.is_empty()
     }
 
     /// Whether a running-in design is searched.
@@ -151,7 +129,7 @@ impl Study {
     }
 
     /// Cells of a bearing's film.
-    fn cells(&self, bearing: usize) -> usize {
+    pub(super) fn cells(&self, bearing: usize) -> usize {
         let halves = if self.half_suffices(bearing) { 1 } else { 2 };
         halves * self.film.cells_around * self.film.cells_across_half
     }
@@ -226,6 +204,9 @@ pub(super) fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Fault
         robust,
         running_in,
         choices: None,
+        experiments: None,
+        expected: Vec::new(),
+        coarse: false,
         started_from: None,
         film: film?,
         orbit: orbit?,
@@ -242,8 +223,16 @@ pub(super) fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Fault
         faults.add("film", words);
         return None;
     }
-    study.hash = sha256(&format!("{}{fingerprint}", study.to_json()));
+    study.hash = sha256(&format!("{}{fingerprint}", computed(study.to_json())));
     Some(study)
+}
+
+/// What of a study decides on its answer: not the figures it is held against, nor another setting.
+fn computed(mut study: serde_json::Value) -> serde_json::Value {
+    if let Some(map) = study.as_object_mut() {
+        ["expected", "coarse"].iter().for_each(|section| drop(map.remove(*section)));
+    }
+    study
 }
 
 /// What is searched and how.

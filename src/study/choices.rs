@@ -1,14 +1,14 @@
 //! Choices from lists: the study with each combination of options is a study of its own, checked with it and searched one after
 //! the other, each from the design before; the best one is the answer.
 
-use super::check::{Study, check};
-use super::faults::{Faults, join, pointer};
+use super::check::Study;
+use super::faults::{Faults, join};
 use super::file::{ChoiceFile, OptionFile, StudyFile};
 use super::searches::{Searched, rank, searches};
+use super::variant::{Wrong, variant};
 use crate::optimise::Outcome;
 use crate::report::{ChoiceReport, ChoiceRun, ChoicesReport};
 use crate::run::{Cost, Event, RunContext, Store};
-use serde::Deserialize;
 use serde_json::Value;
 use std::path::Path;
 
@@ -72,7 +72,7 @@ pub(super) fn choices(
     let mut variants = Vec::new();
     for k in 0..count {
         let picks = picks(&lists, k);
-        variants.extend(variant(&lists, &picks, raw, base, faults).map(|study| (picks, study)));
+        variants.extend(combined(&lists, &picks, raw, base, faults).map(|study| (picks, study)));
     }
     let names = |l: List| (l.name, l.options.into_iter().map(|(name, _)| name).collect());
     Some(Choices { lists: lists.into_iter().map(names).collect(), variants })
@@ -115,58 +115,32 @@ fn picks(lists: &[List], mut k: usize) -> Vec<usize> {
     picks
 }
 
-fn variant(
+fn combined(
     lists: &[List],
     picks: &[usize],
     raw: &Value,
     base: Option<&Path>,
     faults: &mut Faults,
 ) -> Option<Study> {
-    let mut value = raw.clone();
-    if let Some(map) = value.as_object_mut() {
-        map.remove(PATH);
-    }
     let at = |c: usize| format!("{PATH}[{c}].options[{}]", picks[c]);
-    for (c, (list, pick)) in lists.iter().zip(picks).enumerate() {
-        for (key, to) in &list.options[*pick].1 {
-            if put(&mut value, key, to.clone()).is_none() {
-                faults.add(&join(&at(c), "set"), format!("there is no place '{key}' in this study"));
-                return None;
-            }
-        }
-    }
-    let mut own = Faults::of(value.clone());
-    let study = StudyFile::deserialize(value).ok().and_then(|file| check(file, base, &mut own));
-    let taken: Vec<&str> = lists.iter().zip(picks).map(|(l, p)| l.options[*p].0.as_str()).collect();
+    let set = lists.iter().zip(picks).flat_map(|(list, pick)| &list.options[*pick].1);
+    let found = variant(raw, set.map(|(key, to)| (key.as_str(), to)), base);
     // At the option that sets the key, or a key above it, if one does.
     let guilty = |path: &str| {
         let sets =
             |c: &usize| lists[*c].options[picks[*c]].1.iter().any(|(key, _)| path.starts_with(key.as_str()));
         (0..lists.len()).find(sets).map_or_else(|| PATH.to_owned(), at)
     };
-    for (path, message) in own.into_list() {
-        faults.add(&guilty(&path), format!("with \"{}\": {path}: {message}", taken.join("\", \"")));
-    }
-    study
-}
-
-/// Puts a value at a path. Sections on the way that are not written are made; lists must be long enough.
-fn put(root: &mut Value, path: &str, value: Value) -> Option<()> {
-    let pointer = pointer(path);
-    let mut at = root;
-    let mut keys = pointer.split('/').skip(1).peekable();
-    while let Some(key) = keys.next() {
-        if at.is_null() {
-            *at = Value::Object(serde_json::Map::new());
+    match found {
+        Ok(study) => return Some(study),
+        Err(Wrong::NoPlace(key)) => {
+            faults.add(&join(&guilty(&key), "set"), format!("there is no place '{key}' in this study"));
         }
-        at = match at {
-            Value::Object(map) => map.entry(key).or_insert(Value::Null),
-            Value::Array(list) => list.get_mut(key.parse::<usize>().ok()?)?,
-            _ => return None,
-        };
-        if keys.peek().is_none() {
-            *at = value;
-            return Some(());
+        Err(Wrong::Mistakes(list)) => {
+            let taken: Vec<&str> = lists.iter().zip(picks).map(|(l, p)| l.options[*p].0.as_str()).collect();
+            for (path, message) in list {
+                faults.add(&guilty(&path), format!("with \"{}\": {path}: {message}", taken.join("\", \"")));
+            }
         }
     }
     None

@@ -49,6 +49,7 @@ pub fn compare(study: &Study, context: RunContext<'_>) -> Option<Comparison> {
         engines: wanted.engines.clone(),
         perturbation: study.perturbation,
         cases,
+        expected: Vec::new(),
         timing,
         assumptions: assumptions(study),
         provenance: provenance(study),

@@ -27,7 +27,7 @@ pub(super) struct ParetoPlan {
     /// What is limited; its own limit is the first of the list.
     base: ConstraintPlan,
     /// Limits from the easiest to the hardest, SI units.
-    limits: Vec<f64>,
+    pub limits: Vec<f64>,
 }
 
 /// The front of a study, if it asks for one.

@@ -32,7 +32,7 @@ pub(super) struct RobustPlan {
     pub scatter: Vec<(usize, f64)>,
     /// What scatters without being a parameter, at its value in the study.
     pub beside: Vec<ParameterPlan>,
-    samples: u64,
+    pub samples: u64,
     seed: u64,
 }
 

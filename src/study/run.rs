@@ -7,14 +7,14 @@ use super::choices::choose;
 use super::evidence::gradient;
 use super::faults::pointer;
 use super::limits::{constraints, linear, unknown_constraints};
-use super::methods::methods;
+use super::methods::{methods, references};
 use super::pareto::front;
 use super::searches::{Searched, rivals, searches, simulated};
 use super::{observe, robust, run_in};
 use crate::optimise::{Minimum, Outcome, curvature};
 use crate::report::{
     Assumption, ChoicesReport, CostReport, Curves, Findings, KktReport, ObjectiveReport, OutcomeReport,
-    Provenance, REPORT_FORMAT, Report,
+    Provenance, REPORT_FORMAT, Report, ReportTiming, headline,
 };
 use crate::run::{Cancel, Cost, Event, NoStore, RunContext, Store};
 use std::time::Instant;
@@ -83,7 +83,7 @@ fn answered<'r>(
     }
     findings.report.choices = choices;
     findings.report.study_hash = given.hash.clone();
-    let (rivals, of_rivals) = rivals(study, context, store);
+    let (rivals, of_rivals, rivals_s) = rivals(study, context, store);
     findings.report.rivals = rivals;
     let front = front(study, &searched, context, store);
     findings.report.starts = searched.starts;
@@ -98,7 +98,9 @@ fn answered<'r>(
     let cost = &mut findings.report.cost;
     cost.total = sum.0 + sum.1;
     cost.gradients = sum.1;
-    cost.seconds = began.elapsed().as_secs_f64();
+    let report = &mut findings.report;
+    report.timing = ReportTiming { seconds: began.elapsed().as_secs_f64(), rivals_s };
+    report.answer = headline(report);
     findings
 }
 
@@ -151,7 +153,7 @@ fn report(study: &Study, found: &Searched, known: Option<Known>, context: RunCon
     }
     let (simulations, gradients) = plan.problem.costs();
     let total = simulations + gradients;
-    findings.report.cost = CostReport { total, gradients, gradient_calls: minimum.gradients, seconds: 0.0 };
+    findings.report.cost = CostReport { total, gradients, gradient_calls: minimum.gradients };
     findings
 }
 
@@ -159,7 +161,7 @@ fn failed(study: &Study, reason: String, began: Instant) -> Findings {
     let mut findings = blank(study, Outcome::StartFailed, vec![reason]);
     let start: Vec<f64> = study.parameters.iter().map(|p| p.start).collect();
     findings.report.design = design(study, &start);
-    findings.report.cost.seconds = began.elapsed().as_secs_f64();
+    findings.report.timing.seconds = began.elapsed().as_secs_f64();
     findings
 }
 
@@ -172,6 +174,7 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
         study_hash: study.hash.clone(),
         title: text(&study.file.title).unwrap_or_default(),
         question: text(&study.file.question),
+        answer: Vec::new(),
         outcome: OutcomeReport { status, advice: status.advice().to_owned(), refused },
         design: Vec::new(),
         objective: ObjectiveReport {
@@ -203,12 +206,9 @@ fn blank(study: &Study, status: Outcome, mut refused: Vec<String>) -> Findings {
         choices: None,
         linear_constraints: Vec::new(),
         rivals: Vec::new(),
-        cost: CostReport {
-            total: Default::default(),
-            gradients: Default::default(),
-            gradient_calls: 0,
-            seconds: 0.0,
-        },
+        cost: CostReport { total: Default::default(), gradients: Default::default(), gradient_calls: 0 },
+        expected: Vec::new(),
+        timing: ReportTiming::default(),
         assumptions: assumptions(study),
         provenance: provenance(study),
     };
@@ -221,6 +221,8 @@ pub(super) fn provenance(study: &Study) -> Provenance {
         program: env!("CARGO_PKG_NAME").to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         methods: methods(study),
+        references: references(study),
+        coarse: study.coarse,
         started_from: study.started_from.clone(),
         study: study.to_json(),
     }
@@ -231,10 +233,25 @@ pub(super) fn assumptions(study: &Study) -> Vec<Assumption> {
     let map = study.file.assumptions.value().cloned().unwrap_or_default();
     map.into_iter()
         .map(|(key, reason)| {
-            let found = values.pointer(&pointer(&key));
-            let value =
-                found.map_or_else(String::new, |v| v.as_str().map_or_else(|| v.to_string(), str::to_owned));
+            let value = values.pointer(&pointer(&key)).map_or_else(String::new, written);
             Assumption { key, value, reason }
         })
         .collect()
+}
+
+/// A value as people write it: sections as `key = value`, one after the other.
+fn written(value: &serde_json::Value) -> String {
+    use serde_json::Value;
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Object(map) => {
+            let one = |(key, value): (&String, &Value)| match value {
+                Value::Object(_) | Value::Array(_) => format!("{key}: ({})", written(value)),
+                _ => format!("{key} {}", written(value)),
+            };
+            map.iter().map(one).collect::<Vec<_>>().join(", ")
+        }
+        Value::Array(list) => list.iter().map(written).collect::<Vec<_>>().join("; "),
+        other => other.to_string(),
+    }
 }

@@ -229,23 +229,26 @@ fn report(study: &Study, starts: &[Vec<f64>], ends: &[(Plan, End)]) -> StartsRep
     }
 }
 
-/// Rivals of the study's own search, from the same start, one after the other.
+/// Rivals of the study's own search, from the same start, one after the other; with their work and wall times, s.
 pub(super) fn rivals<'r>(
     study: &Study,
     context: RunContext<'r>,
     store: &'r dyn Store,
-) -> (Vec<RivalRun>, (Cost, Cost)) {
+) -> (Vec<RivalRun>, (Cost, Cost), Vec<f64>) {
     let own = (study.optimiser.options.method, study.engine);
     if study.optimiser.rivals.is_empty() {
         return Default::default();
     }
     let all = std::iter::once(own).chain(study.optimiser.rivals.iter().copied());
-    let (mut runs, mut cost) = (Vec::new(), (Cost::default(), Cost::default()));
-    for (run, spent) in all.enumerate().filter_map(|(k, rival)| rival_run(study, k, rival, context, store)) {
+    let (mut runs, mut cost, mut seconds) = (Vec::new(), (Cost::default(), Cost::default()), Vec::new());
+    for (run, spent, time_s) in
+        all.enumerate().filter_map(|(k, rival)| rival_run(study, k, rival, context, store))
+    {
         runs.push(run);
+        seconds.push(time_s);
         cost = (cost.0 + spent.0, cost.1 + spent.1);
     }
-    (runs, cost)
+    (runs, cost, seconds)
 }
 
 fn rival_run<'r>(
@@ -254,7 +257,7 @@ fn rival_run<'r>(
     (method, engine): (Method, EngineName),
     context: RunContext<'r>,
     store: &'r dyn Store,
-) -> Option<(RivalRun, (Cost, Cost))> {
+) -> Option<(RivalRun, (Cost, Cost), f64)> {
     let name = format!("rival {}: {} with {}", k + 1, method.words(), engine.as_str());
     context.progress.tell(&Event::Stage { name });
     if context.cancel.is_cancelled() {
@@ -281,7 +284,6 @@ fn rival_run<'r>(
         simulations: simulations.simulations as f64 / cases,
         gradient_calls: end.gradients,
         gradient_simulations: gradients.factorisations as f64 / per_cycle / cases,
-        seconds: began.elapsed().as_secs_f64(),
     };
-    Some((run, (simulations, gradients)))
+    Some((run, (simulations, gradients), began.elapsed().as_secs_f64()))
 }

@@ -2,10 +2,12 @@
 
 use super::check::Study;
 use super::engines::{EngineComparison, Sweep, compare_engines};
-use super::{characterise, compare, run_saved, simulate};
+use super::expected::judged;
+use super::{characterise, compare, experiment, run_saved, simulate};
 use crate::optimise::EvaluationError;
 use crate::report::{
-    Characteristic, Comparison, Findings, ReportFile, characteristic_files, comparison_files, files,
+    Characteristic, Comparison, ExpectedReport, Experiments, Findings, ReportFile, characteristic_files,
+    comparison_files, experiments_files, files,
 };
 use crate::run::{RunContext, Store};
 
@@ -28,6 +30,8 @@ pub enum Answer {
     Characteristic(Characteristic),
     /// Gradient engines side by side.
     Comparison(Comparison),
+    /// Experiments.
+    Experiments(Experiments),
     /// Gradients, one entry per bearing and operating point.
     Gradient(Vec<EngineComparison>),
 }
@@ -45,19 +49,28 @@ pub fn answer<'r>(
         }
         Task::Gradient => compare_engines(study, &[study.engine], &Sweep(vec![study.perturbation]), context)
             .map(Answer::Gradient),
-        Task::Answer | Task::Simulation => {
-            if let Some(found) = characterise(study, context) {
-                return Ok(Answer::Characteristic(found));
-            }
-            if let Some(found) = compare(study, context) {
-                return Ok(Answer::Comparison(found));
-            }
-            let findings = match task {
-                Task::Simulation => simulate(study, context),
-                _ => run_saved(study, context, store),
-            };
-            Ok(Answer::Design(Box::new(findings)))
+        Task::Simulation if study.searches() || study.experiments.is_some() => {
+            Ok(Answer::Design(Box::new(simulate(study, context))))
         }
+        Task::Answer | Task::Simulation => {
+            let mut found = asked(study, context, store);
+            found.hold_against(study);
+            Ok(found)
+        }
+    }
+}
+
+/// What a study asks for.
+fn asked<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Store) -> Answer {
+    if let Some(found) = characterise(study, context) {
+        return Answer::Characteristic(found);
+    }
+    if let Some(found) = compare(study, context) {
+        return Answer::Comparison(found);
+    }
+    match experiment(study, context, store) {
+        Some(found) => Answer::Experiments(found),
+        None => Answer::Design(Box::new(run_saved(study, context, store))),
     }
 }
 
@@ -71,7 +84,35 @@ impl Answer {
             Self::Design(found) => word(found.report.outcome.status),
             Self::Characteristic(found) => word(found.status),
             Self::Comparison(found) => word(found.status),
+            Self::Experiments(found) => word(found.status),
             Self::Gradient(_) => "complete".to_owned(),
+        }
+    }
+
+    /// Figures the study expects, held against the answer.
+    pub fn expected(&self) -> &[ExpectedReport] {
+        match self {
+            Self::Design(found) => &found.report.expected,
+            Self::Characteristic(found) => &found.expected,
+            Self::Comparison(found) => &found.expected,
+            Self::Experiments(found) => &found.expected,
+            Self::Gradient(_) => &[],
+        }
+    }
+
+    /// Holds the figures the study expects against it.
+    fn hold_against(&mut self, study: &Study) {
+        if study.expected.is_empty() {
+            return;
+        }
+        let judge =
+            |report: serde_json::Result<serde_json::Value>| judged(study, &report.unwrap_or_default());
+        match self {
+            Self::Design(found) => found.report.expected = judge(serde_json::to_value(&found.report)),
+            Self::Characteristic(found) => found.expected = judge(serde_json::to_value(&*found)),
+            Self::Comparison(found) => found.expected = judge(serde_json::to_value(&*found)),
+            Self::Experiments(found) => found.expected = judge(serde_json::to_value(&*found)),
+            Self::Gradient(_) => {}
         }
     }
 
@@ -86,6 +127,7 @@ impl Answer {
             Self::Design(found) => files(found, plots),
             Self::Characteristic(found) => characteristic_files(found),
             Self::Comparison(found) => comparison_files(found),
+            Self::Experiments(found) => experiments_files(found),
             Self::Gradient(found) => {
                 let text = serde_json::to_string_pretty(found).map_err(std::io::Error::other)? + "\n";
                 Ok(vec![ReportFile { name: "report.json".to_owned(), text }])

@@ -9,7 +9,7 @@ mod tables;
 pub use page::{comparison_files, comparison_html};
 pub use tables::{comparison_csv, timing_csv};
 
-use super::{Assumption, Provenance};
+use super::{Assumption, ExpectedReport, Provenance};
 use crate::gradient::{EngineName, Finding, TaylorRow};
 use crate::run::Cost;
 use schemars::JsonSchema;
@@ -51,6 +51,8 @@ pub struct Comparison {
     pub perturbation: f64,
     /// One entry per bearing and operating point.
     pub cases: Vec<ComparedCase>,
+    /// Figures the study expects, held against what was found.
+    pub expected: Vec<ExpectedReport>,
     /// What depends on the machine and differs between reruns: wall times. Nothing else does.
     pub timing: Timing,
     /// What is assumed and why.

@@ -88,7 +88,7 @@ pub async fn study_schema() -> Json<Value> {
     responses((status = 200, description = "JSON Schema (2020-12)", body = Object, content_type = "application/json"))
 )]
 pub async fn report_schema() -> Json<Value> {
-    Json(crate::report::schema())
+    Json(crate::report::schema::<crate::report::Report>())
 }
 
 /// A worked example: a study that is searched within seconds.

@@ -103,7 +103,7 @@ fn mismatch(kind: JobKind, study: &Study) -> Option<String> {
             Some("the study asks for no running-in design: give running_in.minimise".to_owned())
         }
         JobKind::Operational | JobKind::RunningIn | JobKind::Simulation if tabulates => Some(
-            "the study asks for no design but for a table or a comparison: submit it with kind \"study\""
+            "the study asks for no design but for a table, experiments or a comparison: submit it with kind \"study\""
                 .to_owned(),
         ),
         JobKind::Gradient if study.points.is_empty() => {

@@ -1,10 +1,10 @@
 //! News of a computation on its way to the store: told by the computing thread, written by another.
 
-use crate::run::{Event, Progress};
+use crate::run::{Event, Pace, Progress};
 use crate::service::job::JobProgress;
 use crate::service::store::{Fence, NewEvent, Store};
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender};
 
 /// Writes of the progress of one job come no faster.
@@ -27,38 +27,29 @@ pub(super) struct Teller {
 struct Told {
     progress: JobProgress,
     events: usize,
-    began: Instant,
-    first_kkt: Option<f64>,
-    tolerance: f64,
+    pace: Pace,
 }
 
 impl Teller {
     /// For a search to a tolerance.
     pub fn new(to: UnboundedSender<News>, tolerance: f64) -> Self {
-        let told = Told {
-            progress: JobProgress::default(),
-            events: 0,
-            began: Instant::now(),
-            first_kkt: None,
-            tolerance,
-        };
+        let told = Told { progress: JobProgress::default(), events: 0, pace: Pace::new(tolerance) };
         Self { to, state: Mutex::new(told) }
     }
 }
 
 impl Told {
-    /// Time left, s, if the residual goes on falling as it did.
-    fn left(&self, kkt: f64) -> Option<f64> {
-        let first = self.first_kkt.filter(|first| kkt > 0.0 && kkt < *first)?;
-        let (done, missing) = ((first / kkt).ln(), (kkt / self.tolerance).max(1.0).ln());
-        Some((self.began.elapsed().as_secs_f64() * missing / done * 10.0).round() / 10.0)
-    }
-
     fn take(&mut self, event: &Event) -> Option<&'static str> {
+        self.pace.watch(event);
         let p = &mut self.progress;
+        p.seconds_left = self.pace.left_s();
         match event {
             Event::Stage { name } => {
                 p.stage = Some(name.clone());
+                Some("stage")
+            }
+            Event::Part { done, total } => {
+                p.stage = Some(format!("{done} of {total} runs are done"));
                 Some("stage")
             }
             Event::Simulated { simulations, .. } => {
@@ -75,11 +66,6 @@ impl Told {
                 p.violation = Some(i.violation);
                 p.kkt = i.kkt.is_finite().then_some(i.kkt);
                 p.simulations = p.simulations.max(i.simulations);
-                let left = i.kkt.is_finite().then(|| self.left(i.kkt)).flatten();
-                self.progress.seconds_left = left;
-                if i.kkt.is_finite() {
-                    self.first_kkt.get_or_insert(i.kkt);
-                }
                 Some("iteration")
             }
         }

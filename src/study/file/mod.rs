@@ -30,6 +30,7 @@ macro_rules! words {
 mod bearing;
 mod characteristic;
 mod comparison;
+mod experiments;
 mod film;
 mod machine;
 mod oil;
@@ -39,6 +40,7 @@ mod surface;
 pub use bearing::{BearingFile, BearingKind, HeatBalanceFile, OpeningFile, OpeningKind, SupplyFile};
 pub use characteristic::{CharacteristicFile, VaryName};
 pub use comparison::ComparisonFile;
+pub use experiments::{EachName, ExpectedFile, ExperimentsFile, FactorFile, PlanName, SpacingName};
 pub use film::{CavitationName, CavityShearName, FilmFile, FilmModelName, OrbitFile, SchemeName};
 pub use machine::{CylinderPressureFile, MachineFile, PressureSource};
 pub use oil::{
@@ -81,6 +83,10 @@ section! {
         title: String,
         /// The question this study answers, for its readers. Default: none.
         question: String,
+        /// Figures the report must show, by their path there, like "objective.optimum.total_w" or "design[name=big_end.width].value". Held against the answer of a run.
+        expected: BTreeMap<String, Given<ExpectedFile>>,
+        /// A coarse setting, to see quickly whether all is well: keys of the study by their path, with the values they take with --coarse.
+        coarse: BTreeMap<String, Value>,
         /// What is not known but assumed: path of a key and the reason for its value. Listed in the report.
         assumptions: BTreeMap<String, String>,
         /// The machine: needed unless every bearing has its load as a table.
@@ -101,6 +107,8 @@ section! {
         characteristic: CharacteristicFile,
         /// Compare the gradient engines at the start design instead of searching a better one.
         comparison: ComparisonFile,
+        /// The study many times over with other values of its keys, instead of once.
+        experiments: ExperimentsFile,
         /// What is minimised, at which operating points. Like all below not with a characteristic.
         objective: ObjectiveFile,
         /// Design parameters with their box.

@@ -1,0 +1,49 @@
+//! Many studies at a glance.
+
+use super::stamp::Done;
+use super::tables::{maybe, table};
+use crate::report::{IndexEntry, short};
+use crate::study::Answer;
+
+/// An answer in the few numbers of a list.
+pub(super) fn done(found: &Answer, told: String, code: u8) -> Done {
+    let (title, loss_w, saving_percent, seconds) = match found {
+        Answer::Design(f) => {
+            let o = &f.report.objective;
+            let loss = o.optimum.as_ref().map(|l| l.total_w);
+            (f.report.title.clone(), loss, o.saving_percent, f.report.timing.seconds)
+        }
+        Answer::Characteristic(f) => (f.title.clone(), None, None, f.timing.seconds),
+        Answer::Comparison(f) => (f.title.clone(), None, None, f.timing.seconds),
+        Answer::Experiments(f) => {
+            let best = f.best.and_then(|n| f.runs.get(n - 1)?.responses.first().copied().flatten());
+            (f.title.clone(), best, None, f.timing.seconds)
+        }
+        Answer::Gradient(_) => (String::new(), None, None, 0.0),
+    };
+    let expected = found.expected();
+    let entry = IndexEntry {
+        name: String::new(),
+        title,
+        status: found.status(),
+        good: code == 0,
+        loss_w,
+        saving_percent,
+        expected: expected.len(),
+        met: expected.iter().filter(|e| e.met).count(),
+        seconds,
+    };
+    Done { code, told, entry }
+}
+
+/// The list of a run of many.
+pub(super) fn table_of(rows: &[(IndexEntry, bool)]) -> String {
+    let mut all = table(&["study", "outcome", "loss [W]", "saving [%]", "figures met", "time [s]"]);
+    for (e, before) in rows {
+        let met = if e.expected == 0 { String::new() } else { format!("{} of {}", e.met, e.expected) };
+        let time = if *before { "before".to_owned() } else { short(e.seconds) };
+        let status = e.status.replace('-', " ");
+        all.add_row([e.name.clone(), status, maybe(e.loss_w), maybe(e.saving_percent), met, time]);
+    }
+    format!("{all}\n")
+}
