@@ -223,7 +223,8 @@ fn running_in_study(running_in: &str, more: &str, changes: &[(&str, &str)]) -> S
 fn a_running_in_design_loses_less_within_its_wear_limits() {
     let asked =
         "minimise = \"mean-loss\"\nmax_wear_volume = \"0.1 mm3\"\nwear_depth_tolerance = \"0.5 um\"\n";
-    let report = quietly(|context| stribeck::study::run(&running_in_study(asked, "", &[]), context)).report;
+    let study = running_in_study(asked, "", &[("steps_per_cycle = 240", "steps_per_cycle = 120")]);
+    let report = quietly(|context| stribeck::study::run(&study, context)).report;
     let running_in = report.running_in.as_ref().unwrap();
     println!("{:?} {:?} {:#?}", report.outcome, running_in.limits, report.design);
     assert_eq!(report.outcome.status, stribeck::optimise::Outcome::Converged);
@@ -305,7 +306,7 @@ fn the_programme_is_designed_with_the_bearing_and_the_approximation_leads_to_the
 #[test]
 fn a_stage_ends_early_when_blocks_change_little() {
     use stribeck::running_in::Settled;
-    let study = leaning(&[]);
+    let study = leaning(&[("steps_per_cycle = 240", "steps_per_cycle = 120")]);
     let (stage, orbit) = stage(&study, 36000.0);
     let settled = Some(Settled { loss_share_per_s: 1e-6, depth_m_per_s: 5e-11 });
     let options = MarchOptions { settled, ..options(orbit) };
@@ -326,7 +327,7 @@ fn a_stage_ends_early_when_blocks_change_little() {
 #[test]
 fn surfaces_that_wear_smooth_touch_less() {
     use stribeck::cranktrain::{BearingSetup, JournalBearing, Smoothing};
-    let study = leaning(&[]);
+    let study = leaning(&[("steps_per_cycle = 240", "steps_per_cycle = 120")]);
     let (stage, orbit) = stage(&study, 1200.0);
     let smooths = |left: f64| {
         let smoothing = Some(Smoothing { left, depth_m: 2e-7 });

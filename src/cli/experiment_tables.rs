@@ -15,7 +15,9 @@ pub(super) fn experiments(found: &Experiments) -> String {
     let mut head = vec!["run".to_owned()];
     head.extend(found.factors.iter().map(|f| with_unit(&f.name, &f.unit)));
     head.extend(["outcome".to_owned(), "limits".to_owned()]);
-    let shown = found.shown();
+    // What is the same in all runs needs no column.
+    let mut shown = found.shown();
+    shown.retain(|k| *k == 0 || varies(found, *k));
     head.extend(shown.iter().map(|k| with_unit(&found.responses[*k].title, &found.responses[*k].unit)));
     let mut rows = table(&head.iter().map(String::as_str).collect::<Vec<_>>());
     for run in found.runs.iter().take(PRINTED) {
@@ -57,4 +59,11 @@ pub(super) fn experiments(found: &Experiments) -> String {
         text += &format!("\nleast loss with all limits kept: run {} with {loss} W\n", best.number);
     }
     text + &format!("{} runs, {} s\n", found.runs.len(), short(found.timing.seconds))
+}
+
+/// Whether a response is not the same in all runs that have it.
+fn varies(found: &Experiments, k: usize) -> bool {
+    let mut all = found.runs.iter().filter_map(|r| r.responses.get(k).copied().flatten());
+    let first = all.next();
+    all.any(|v| Some(v) != first)
 }

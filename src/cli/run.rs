@@ -13,6 +13,7 @@ use crate::run::{Cancel, FolderStore, RunContext};
 use crate::study::{Answer, Reading, Study, Task, answer, setting};
 use clap::Args;
 use serde_json::{Value, json};
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -63,6 +64,8 @@ struct Job {
 /// How a study ended.
 struct End {
     done: Done,
+    /// What is told of it at this terminal.
+    told: String,
     /// Whether it had been computed before.
     before: bool,
 }
@@ -88,6 +91,9 @@ pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
         let chosen: Vec<usize> = (0..jobs.len()).filter(|k| which(&jobs[*k])).collect();
         each(&chosen, at_once, |k| {
             let end = one(&jobs[k], a, many, &cancel, &display);
+            if end.is_err() {
+                display.end(&jobs[k].name, json!({ "status": "failed" }));
+            }
             *ends[k].lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(end);
         });
     };
@@ -131,7 +137,7 @@ fn jobs(a: &RunArguments, many: bool) -> Result<Vec<Job>, Stop> {
             stops.push(Stop::File(file, std::io::Error::other(words)));
             continue;
         }
-        let with = Reading { base: None, coarse: a.coarse, set: &a.set };
+        let with = Reading { coarse: a.coarse, set: &a.set, ..Reading::default() };
         let study =
             read(&file, with, a.json).and_then(|s| super::commands::started(s, a.start_from.as_deref()));
         match study {
@@ -177,7 +183,7 @@ fn one(job: &Job, a: &RunArguments, many: bool, cancel: &Cancel, display: &Displ
             }
             if let Some(done) = stamp.done() {
                 display.end(&job.name, end_line(&done, job, true));
-                return Ok(End { done, before: true });
+                return Ok(End { told: done.told.clone(), done, before: true });
             }
         }
     }
@@ -192,7 +198,7 @@ fn one(job: &Job, a: &RunArguments, many: bool, cancel: &Cancel, display: &Displ
     let found = found.map_err(Stop::Simulation)?;
     let files = found.files(false).map_err(lost)?;
     report::write_folder(&files, &job.folder).map_err(lost)?;
-    let done = summaries::done(&found, told::told(&found), code(&found));
+    let done = summaries::done(&found, a.coarse, told::told(&found, false), code(&found));
     if !found.is_cancelled() {
         stamp.set(&done, &files);
         // Only a search leaves checkpoints behind it, and only its own end makes them useless.
@@ -201,7 +207,7 @@ fn one(job: &Job, a: &RunArguments, many: bool, cancel: &Cancel, display: &Displ
         }
     }
     display.end(&job.name, end_line(&done, job, false));
-    Ok(End { done, before: false })
+    Ok(End { done, told: told::told(&found, std::io::stdout().is_terminal()), before: false })
 }
 
 fn end_line(done: &Done, job: &Job, before: bool) -> Value {
@@ -237,7 +243,7 @@ fn finish(a: &RunArguments, many: bool, jobs: &[Job], ends: Vec<Result<End, Stop
             let path = folder.join("report.json");
             put(&std::fs::read_to_string(&path).map_err(|e| Stop::File(path, e))?);
         } else if !a.json_lines {
-            put(&end.done.told);
+            put(&end.told);
             if end.before {
                 put("computed before; nothing has changed since (--fresh computes it anew)\n");
             }

@@ -6,12 +6,14 @@ use crate::report::{IndexEntry, short};
 use crate::study::Answer;
 
 /// An answer in the few numbers of a list.
-pub(super) fn done(found: &Answer, told: String, code: u8) -> Done {
+pub(super) fn done(found: &Answer, coarse: bool, told: String, code: u8) -> Done {
     let (title, loss_w, saving_percent, seconds) = match found {
         Answer::Design(f) => {
             let o = &f.report.objective;
             let loss = o.optimum.as_ref().map(|l| l.total_w);
-            (f.report.title.clone(), loss, o.saving_percent, f.report.timing.seconds)
+            // What a start that breaks its limits loses is no measure.
+            let saving = o.saving_percent.filter(|_| o.start_violation.is_none_or(|v| v <= 1e-6));
+            (f.report.title.clone(), loss, saving, f.report.timing.seconds)
         }
         Answer::Characteristic(f) => (f.title.clone(), None, None, f.timing.seconds),
         Answer::Comparison(f) => (f.title.clone(), None, None, f.timing.seconds),
@@ -31,6 +33,7 @@ pub(super) fn done(found: &Answer, told: String, code: u8) -> Done {
         saving_percent,
         expected: expected.len(),
         met: expected.iter().filter(|e| e.met).count(),
+        coarse,
         seconds,
     };
     Done { code, told, entry }

@@ -3,12 +3,11 @@
 use super::{experiment_tables, proof_tables, tables};
 use crate::report::ExpectedReport;
 use crate::study::Answer;
-use std::io::IsTerminal;
 
-/// The answer as tables.
-pub(super) fn told(found: &Answer) -> String {
+/// The answer as tables, in colours or without.
+pub(super) fn told(found: &Answer, colour: bool) -> String {
     let text = match found {
-        Answer::Design(found) => tables::summary(&found.report, std::io::stdout().is_terminal()),
+        Answer::Design(found) => tables::summary(&found.report, colour),
         Answer::Characteristic(found) => tables::characteristic(found),
         Answer::Comparison(found) => proof_tables::comparison(found),
         Answer::Experiments(found) => experiment_tables::experiments(found),

@@ -249,18 +249,23 @@ pub fn load(c: &Curves, name: &str) -> String {
 
 /// Orbit of the journal in the clearance circle, at equal scale.
 pub fn orbit(c: &Curves, name: &str) -> String {
-    let circle = (0..=180).map(|i| (TAU * f64::from(i) / 180.0).sin_cos()).map(|(s, c)| (c, s));
     let closed = |path: &[[f64; 2]]| -> Vec<(f64, f64)> {
         path.iter().chain(path.first()).map(|e| (e[0], e[1])).collect()
     };
-    let mut plots: Vec<Plot> = vec![
-        LinePlot::new().with_data(circle).with_color("#555555").with_stroke_width(1.2).with_dashed().into(),
-    ];
+    let mut plots: Vec<Plot> = Vec::new();
     if !c.start_eccentricity.is_empty() {
         plots.push(path(closed(&c.start_eccentricity), START, "start"));
     }
     plots.push(path(closed(&c.eccentricity), FOUND, "design"));
     plots.push(marks(c));
+    in_clearance_circle(plots, name)
+}
+
+/// Paths in the clearance circle, at equal scale.
+pub(super) fn in_clearance_circle(paths: Vec<Plot>, name: &str) -> String {
+    let circle = (0..=180).map(|i| (TAU * f64::from(i) / 180.0).sin_cos()).map(|(s, c)| (c, s));
+    let circle = LinePlot::new().with_data(circle).with_color("#555555").with_stroke_width(1.2).with_dashed();
+    let plots: Vec<Plot> = std::iter::once(circle.into()).chain(paths).collect();
     let (left, right, top, bottom, side) = (64.0, 20.0, 16.0, 54.0, 400.0);
     let layout = styled(Layout::auto_from_plots(&plots))
         .with_x_label("eccentricity ratio along x")

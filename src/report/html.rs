@@ -193,6 +193,7 @@ pub(super) fn environment() -> Environment<'static> {
     environment.add_filter("units", units);
     environment.add_filter("plain", plain);
     environment.add_filter("link", link);
+    environment.add_filter("typeset", |text: String| typeset(&text));
     environment.add_filter("words", |s: String| s.replace('-', " "));
     environment
 }
@@ -222,4 +223,36 @@ fn plain(value: Value) -> String {
 fn link(name: &str) -> String {
     let kept = |b: u8| b.is_ascii_alphanumeric() || b"._-".contains(&b);
     name.bytes().map(|b| if kept(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect()
+}
+
+/// A sentence with its units as they are written in text; words that only contain their letters stay.
+fn typeset(text: &str) -> String {
+    let apart = |c: char| !c.is_alphanumeric();
+    let word = |piece: &str| {
+        let (word, end) = piece.split_at(piece.find(apart).unwrap_or(piece.len()));
+        let word = match word {
+            "um" => "µm",
+            "degC" => "°C",
+            "mm3" => "mm³",
+            other => other,
+        };
+        format!("{word}{end}")
+    };
+    text.split_inclusive(apart).map(word).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_in_sentences_are_typeset_and_words_stay() {
+        let text = "a minimum of 3 um (9 W per um), 5 mm3/h at 80 degC.";
+        assert_eq!(typeset(text), "a minimum of 3 µm (9 W per µm), 5 mm³/h at 80 °C.");
+    }
+
+    #[test]
+    fn names_of_files_are_links() {
+        assert_eq!(link("a b-1.toml"), "a%20b-1.toml");
+    }
 }

@@ -26,6 +26,8 @@ pub struct IndexEntry {
     pub expected: usize,
     /// How many of them are met.
     pub met: usize,
+    /// Whether the study's coarse setting was used.
+    pub coarse: bool,
     /// Wall time, s.
     pub seconds: f64,
 }

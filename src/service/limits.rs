@@ -75,7 +75,6 @@ impl Limits {
         );
         most(study.parameters.len(), self.parameters, "parameters", "parameters");
         most(cases(study), self.cases, "objective.operating_points", "bearings times operating points");
-        most(study.experiments().count(), self.experiments, "experiments", "runs");
         // A factor may make a study of the experiments larger than the one it is made of.
         if let Some((run, beyond)) = study
             .experiments()

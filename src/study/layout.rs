@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::path::Path;
 
 const PATH: &str = "experiments";
-/// Runs at most.
+/// Runs at most, if nobody says less.
 const MOST: usize = 2000;
 
 /// Checked experiments.
@@ -48,7 +48,7 @@ fn at(key: &str) -> String {
 }
 
 /// The experiments as written, their defaults written in; mistakes are told whatever else is wrong.
-pub(super) fn layout(file: &mut StudyFile, faults: &mut Faults) -> Option<Layout> {
+pub(super) fn layout(file: &mut StudyFile, most: Option<usize>, faults: &mut Faults) -> Option<Layout> {
     faults.get(&file.experiments, PATH);
     let alone = [
         (file.choices.is_absent(), "choices"),
@@ -90,9 +90,10 @@ pub(super) fn layout(file: &mut StudyFile, faults: &mut Faults) -> Option<Layout
         }
         factors.push(found);
     }
-    let count = runs.unwrap_or_else(|| factors.iter().map(Factor::levels).product());
-    if count > MOST {
-        faults.add(PATH, format!("have {count} runs; at most {MOST} are made"));
+    let count = runs.unwrap_or_else(|| factors.iter().fold(1, |n: usize, f| n.saturating_mul(f.levels())));
+    let most = most.unwrap_or(MOST);
+    if count > most {
+        faults.add(PATH, format!("have {count} runs; at most {most} are made"));
         return None;
     }
     (factors.len() == wanted && (runs.is_some() || !drawn)).then_some(Layout {

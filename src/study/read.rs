@@ -22,6 +22,8 @@ pub struct Reading<'a> {
     pub coarse: bool,
     /// Values that replace those of the file, by the path of their key.
     pub set: &'a [(String, Value)],
+    /// Runs that experiments may have; every one of them is checked. None: 2000.
+    pub most_runs: Option<usize>,
 }
 
 /// A key with its value from `KEY=VALUE`: as TOML would read the value, or else as text.
@@ -111,7 +113,7 @@ fn document(value: &Value, with: &Reading<'_>, faults: &mut Faults) -> Option<St
     };
     let lists: Vec<List> = choices::lists(&file, faults);
     let expected = expected::expected(&mut file, with.coarse, faults);
-    let layout = layout::layout(&mut file, faults);
+    let layout = layout::layout(&mut file, with.most_runs, faults);
     let study = check(file, with.base, faults)?;
     if !with.coarse {
         coarse(&study.file, value, with, faults);

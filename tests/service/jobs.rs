@@ -99,8 +99,13 @@ fn every_kind_of_job_has_its_answer() {
          [[running_in.stages]]\nname = \"rated\"\nduration = \"1 h\"\nspeed = \"1000 rpm\"\n",
         wiebe.replace("min-film-thickness\"\nat_least = \"2 um", "min-film-thickness\"\nat_least = \"0.1 um")
     );
+    let varied = format!(
+        "{wiebe}\n[experiments]\nplan = \"sobol\"\nruns = 3\n[[experiments.factors]]\nkey = \"orbit.steps_per_cycle\"\n\
+         lower = 120\nupper = 160\n"
+    );
     let jobs = [
         ("study", json!(wiebe), "converged"),
+        ("study", json!(varied), "complete"),
         ("operational", object, "converged"),
         ("running-in", json!(runs_in), ""),
         ("simulation", json!(wiebe), "simulated"),
@@ -120,9 +125,19 @@ fn every_kind_of_job_has_its_answer() {
             "gradient" => assert!(result[0]["rows"][0]["values"][0][0].is_number(), "{result}"),
             "check" => assert_eq!(result["format"], "stribeck-study/1"),
             "running-in" => assert!(result["running_in"]["minimised"]["optimum"].is_number(), "{result}"),
+            "study" if *outcome == "complete" => {
+                assert_eq!(result["schema_version"], "stribeck-experiments/1");
+                assert_eq!(result["runs"].as_array().unwrap().len(), 3);
+                service.get(&format!("/v1/jobs/{id}/files/experiments.csv"));
+            }
             _ => assert!(result["design"].is_array(), "{result}"),
         }
     }
+    let many = varied.replace("runs = 3", "runs = 201");
+    let problem = service.post("/v1/jobs", &json!({ "study": many })).problem(422, "invalid-study");
+    assert_eq!(problem["errors"][0]["path"], "study.experiments");
+    let body = json!({ "kind": "operational", "study": varied });
+    assert_eq!(service.post("/v1/jobs", &body).problem(422, "invalid-study")["errors"][0]["path"], "kind");
 }
 
 #[test]

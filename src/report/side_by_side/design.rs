@@ -60,11 +60,15 @@ pub fn designs(a: &Report, b: &Report) -> DesignPair {
     }
 }
 
+/// Size in its unit below which a number is the rounding of nothing: contact where surfaces do not touch.
+const TRACE: f64 = 1e-6;
+
 fn measured<T>(measures: &[Measure<T>], a: Option<&T>, b: Option<&T>) -> Vec<NumberPair> {
-    measures
-        .iter()
-        .map(|(name, unit, of)| NumberPair::new(*name, unit, a.and_then(of), b.and_then(of)))
-        .collect()
+    let seen = |v: f64| if v.abs() < TRACE { 0.0 } else { v };
+    let one = |(name, unit, of): &Measure<T>| {
+        NumberPair::new(*name, unit, a.and_then(of).map(seen), b.and_then(of).map(seen))
+    };
+    measures.iter().map(one).collect()
 }
 
 fn outcome(a: &Report, b: &Report) -> Vec<TextPair> {

@@ -1,10 +1,10 @@
 //! Working cycles of two designs in the same figures, read back from their `orbit.csv`: A grey, B blue, on one scale.
 
 use super::super::data::TOUCH_MPA;
+use super::super::figures::in_clearance_circle;
 use super::super::svg::{FOUND, START, axis, half, legend_below, over_cycle, render, styled};
 use kuva::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
 /// Relative difference up to which a cycle is that of a report: `orbit.csv` has ten digits.
 const SAME: f64 = 1e-6;
@@ -210,27 +210,7 @@ fn over_angle(series: &[Series<'_>], frame: fn(Layout) -> Layout, label: &str, n
 
 /// Orbits of the journal in the clearance circle, at equal scale.
 fn orbit(a: &Cycle, b: &Cycle, name: &str) -> String {
-    let circle = (0..=180).map(|i| (TAU * f64::from(i) / 180.0).sin_cos()).map(|(s, c)| (c, s)).collect();
-    let plots: Vec<Plot> = vec![
-        line(circle, "#555555").with_dashed().into(),
-        line(a.path(), START).with_legend("A").into(),
-        line(b.path(), FOUND).with_legend("B").into(),
-    ];
-    let (left, right, top, bottom, side) = (64.0, 20.0, 16.0, 54.0, 400.0);
-    let layout = styled(Layout::auto_from_plots(&plots))
-        .with_x_label("eccentricity ratio along x")
-        .with_y_label("eccentricity ratio along y")
-        .with_x_axis_min(-1.2)
-        .with_x_axis_max(1.2)
-        .with_y_axis_min(-1.2)
-        .with_y_axis_max(1.2)
-        .with_x_tick_step(0.5)
-        .with_y_tick_step(0.5)
-        .with_tick_format(TickFormat::Fixed(1))
-        .with_width(left + side + right)
-        .with_height(top + side + bottom)
-        .with_force_margins(left, right)
-        .with_force_margins_y(top, bottom)
-        .with_legend_position(LegendPosition::InsideBottomRight);
-    render(plots, layout, name)
+    let paths: Vec<Plot> =
+        vec![line(a.path(), START).with_legend("A").into(), line(b.path(), FOUND).with_legend("B").into()];
+    in_clearance_circle(paths, name)
 }

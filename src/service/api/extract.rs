@@ -2,7 +2,7 @@
 
 use super::problem::{FieldError, Problem, of_study};
 use crate::service::limits::Limits;
-use crate::study::{Format, Study};
+use crate::study::{Format, Reading, Study};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{FromRequest, FromRequestParts, Request};
@@ -155,13 +155,14 @@ impl Fields {
     /// The study: an object in the form of the study file, or the text of one in TOML. Files are not read.
     pub fn study(&mut self, limits: &Limits) -> Option<Study> {
         let path = self.path("study");
+        let with = Reading { most_runs: Some(limits.experiments), ..Reading::default() };
         let read = match self.take("study") {
             None => {
                 self.wrong("study", "is missing: give a study as JSON object, or as TOML text");
                 return None;
             }
-            Some(Value::String(toml)) => Study::read(&toml, Format::Toml, None),
-            Some(value @ Value::Object(_)) => Study::read(&value.to_string(), Format::Json, None),
+            Some(Value::String(toml)) => Study::read_with(&toml, Format::Toml, &with),
+            Some(value @ Value::Object(_)) => Study::read_with(&value.to_string(), Format::Json, &with),
             Some(other) => {
                 let found = shortened(&other);
                 self.wrong("study", format!("found {found}: expected an object, or TOML text"));
