@@ -85,6 +85,9 @@ pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
         ));
         return Ok(0);
     }
+    if a.simulate && jobs.iter().any(|j| j.study.experiments().next().is_some()) {
+        eprintln!("note: --simulate looks at the study itself; its experiments are left out");
+    }
     let (cancel, display) = (cancel_on_ctrl_c(), Display::new(a.json_lines));
     let ends: Vec<Mutex<Option<Result<End, Stop>>>> = jobs.iter().map(|_| Mutex::new(None)).collect();
     let work = |at_once: usize, which: &dyn Fn(&Job) -> bool| {
@@ -197,6 +200,7 @@ fn one(job: &Job, a: &RunArguments, many: bool, cancel: &Cancel, display: &Displ
     bars.finish();
     let found = found.map_err(Stop::Simulation)?;
     let files = found.files(false).map_err(lost)?;
+    stamp.sweep(&files);
     report::write_folder(&files, &job.folder).map_err(lost)?;
     let done = summaries::done(&found, a.coarse, told::told(&found, false), code(&found));
     if !found.is_cancelled() {
@@ -236,6 +240,9 @@ fn code(found: &Answer) -> u8 {
 
 /// Prints what there is to say at the end; the exit code is the first that is not zero.
 fn finish(a: &RunArguments, many: bool, jobs: &[Job], ends: Vec<Result<End, Stop>>) -> Result<u8, Stop> {
+    if a.coarse && !a.json && !a.json_lines {
+        put("Coarse setting: it shows whether a study works, its numbers decide nothing.\n\n");
+    }
     if !many {
         let end = ends.into_iter().next().ok_or(Stop::Simulation(EvaluationError::Cancelled))??;
         let folder = &jobs[0].folder;

@@ -48,6 +48,18 @@ impl Stamp {
         (content.key == self.key && content.files.iter().all(whole)).then_some(content.done)
     }
 
+    /// Removes files of an earlier report that a new one has not.
+    pub fn sweep(&self, files: &[ReportFile]) {
+        let old =
+            std::fs::read(&self.path).ok().and_then(|text| serde_json::from_slice::<Content>(&text).ok());
+        for name in old.iter().flat_map(|c| c.files.keys()).filter(|n| files.iter().all(|f| f.name != **n)) {
+            // Only a name: the stamp says what this program wrote, and no more is removed.
+            if Path::new(name).file_name().is_some_and(|plain| plain == name.as_str()) {
+                let _ = std::fs::remove_file(self.folder.join(name));
+            }
+        }
+    }
+
     /// Notes that the study is done; a failure only costs the time to compute it again.
     pub fn set(&self, done: &Done, files: &[ReportFile]) {
         let files = files.iter().map(|f| (f.name.clone(), sha256(&f.text))).collect();

@@ -10,6 +10,18 @@ pub(super) fn done(found: &Answer, coarse: bool, told: String, code: u8) -> Done
     let (title, loss_w, saving_percent, seconds) = match found {
         Answer::Design(f) => {
             let o = &f.report.objective;
+            let minimised = f.report.running_in.as_ref().and_then(|r| r.minimised.as_ref());
+            if let Some(m) = minimised {
+                let loss = (m.unit == "W").then_some(m.optimum);
+                let saving = m.saving_percent.filter(|_| m.start_violation.is_none_or(|v| v <= 1e-6));
+                return listed(
+                    found,
+                    (f.report.title.clone(), loss, saving, f.report.timing.seconds),
+                    coarse,
+                    told,
+                    code,
+                );
+            }
             let loss = o.optimum.as_ref().map(|l| l.total_w);
             // What a start that breaks its limits loses is no measure.
             let saving = o.saving_percent.filter(|_| o.start_violation.is_none_or(|v| v <= 1e-6));
@@ -23,6 +35,16 @@ pub(super) fn done(found: &Answer, coarse: bool, told: String, code: u8) -> Done
         }
         Answer::Gradient(_) => (String::new(), None, None, 0.0),
     };
+    listed(found, (title, loss_w, saving_percent, seconds), coarse, told, code)
+}
+
+fn listed(
+    found: &Answer,
+    (title, loss_w, saving_percent, seconds): (String, Option<f64>, Option<f64>, f64),
+    coarse: bool,
+    told: String,
+    code: u8,
+) -> Done {
     let expected = found.expected();
     let entry = IndexEntry {
         name: String::new(),

@@ -19,7 +19,7 @@ pub const REPORT_FORMAT: &str = "stribeck-report/1";
 pub struct Report {
     /// Version of this format, "stribeck-report/1".
     pub schema_version: String,
-    /// SHA-256 of the study with every default written out and its tables.
+    /// SHA-256 of all that decides on the answer: the study with every default and its tables, without its words.
     pub study_hash: String,
     /// Title of the study.
     pub title: String,

@@ -7,7 +7,9 @@ use crate::optimise::Outcome;
 /// Violation up to which a start keeps its limits.
 const KEPT: f64 = 1e-6;
 /// Things named in one sentence at most.
-const NAMED: usize = 4;
+const NAMED: usize = 6;
+/// Film pressure beyond which rigid bodies say little: real ones give way, MPa.
+const RIGID_MPA: f64 = 400.0;
 
 /// The sentences.
 pub fn headline(report: &Report) -> Vec<String> {
@@ -15,7 +17,36 @@ pub fn headline(report: &Report) -> Vec<String> {
     all.extend(loss(report));
     all.extend(held_back(report));
     all.extend(not_met(report));
+    all.extend(front(report));
+    all.extend(beyond_rigid(report));
     all
+}
+
+/// The ends of a front.
+fn front(report: &Report) -> Option<String> {
+    let p = report.pareto.as_ref()?;
+    let mut found = p.points.iter().filter_map(|q| Some((q.limit, q.loss_w?)));
+    let (first, last) = (found.next()?, found.next_back()?);
+    let end = |(limit, loss): (f64, f64)| format!("{} W at {} {}", short(loss), short(limit), p.unit);
+    let what = p.quantity.replace('-', " ");
+    Some(format!("The front over {what} ({}) runs from {} to {}.", p.sense, end(first), end(last)))
+}
+
+/// A film pressure that the model of the bodies does not bear.
+fn beyond_rigid(report: &Report) -> Option<String> {
+    let top = report
+        .orbit
+        .iter()
+        .max_by(|a, b| a.max_film_pressure_mpa.value.total_cmp(&b.max_film_pressure_mpa.value))?;
+    let p = top.max_film_pressure_mpa.value;
+    (p > RIGID_MPA).then(|| {
+        format!(
+            "Mind that bodies are rigid here: the film pressure of {} MPa in {} at {} is more than elastic ones would let arise.",
+            short(p),
+            top.bearing,
+            top.operating_point
+        )
+    })
 }
 
 fn loss(report: &Report) -> Option<String> {
@@ -26,7 +57,8 @@ fn loss(report: &Report) -> Option<String> {
         (_, Some(m)) => {
             let start = format!("the start {} {}", short(m.start), m.unit);
             let saved = m.saving_percent.map_or_else(String::new, |p| format!(", {} % saved", short(p)));
-            return Some(format!("{}: {} {}; {start}{saved}.", m.quantity, short(m.optimum), m.unit));
+            let found = format!("{} {}", short(m.optimum), m.unit);
+            return Some(format!("The design has a {} of {found}; {start}{saved}.", m.quantity));
         }
         (true, None) => "mean friction loss",
         (false, None) => "largest loss times weight",

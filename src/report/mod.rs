@@ -7,6 +7,7 @@ mod characteristic;
 mod comparison;
 mod csv_file;
 mod data;
+mod design_csv;
 mod experiments;
 mod figures;
 mod headline;
@@ -31,6 +32,7 @@ pub use comparison::{
 };
 pub use csv_file::{orbit_csv, sensitivity_csv};
 pub use data::*;
+pub use design_csv::design_csv;
 pub use experiments::{
     EXPERIMENTS_FORMAT, EffectReport, ExperimentRun, Experiments, ExperimentsStatus, FactorReport,
     RefinementReport, ResponseReport, effects, experiments_csv, experiments_files, experiments_html,
@@ -90,11 +92,14 @@ impl Files {
     }
 }
 
-/// The files of a report: `report.json`, `orbit.csv`, where there are any the fields (`sensitivity.csv`, `*.vts`), `report.html`;
+/// The files of a report: `report.json`, `design.csv` and its like, `orbit.csv`, where there are any the fields (`sensitivity.csv`, `*.vts`), `report.html`;
 /// with `plots` every figure of the page as SVG, too.
 pub fn files(findings: &Findings, plots: bool) -> std::io::Result<Vec<ReportFile>> {
     let mut all = Files::default();
     all.json(&findings.report)?;
+    for (name, text) in design_csv(&findings.report).map_err(std::io::Error::other)? {
+        all.add(name, Ok::<_, std::fmt::Error>(text))?;
+    }
     all.add("orbit.csv", orbit_csv(findings))?;
     if findings.curves.iter().any(|c| c.sensitivity.is_some()) {
         all.add("sensitivity.csv", sensitivity_csv(findings))?;

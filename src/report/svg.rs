@@ -72,11 +72,24 @@ pub fn tight_axis(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     up_to(1.0 - 1e-9, values)
 }
 
+/// Ends and step of an axis around values that need not begin at zero; no value stands on an end.
+pub fn axis_around(values: &[f64]) -> (f64, f64, f64) {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let span = (high - low).max(1e-3 * high.abs().max(low.abs())).max(1e-12);
+    let step = nice(span / 5.0);
+    (((low - 0.1 * span) / step).floor() * step, ((high + 0.1 * span) / step).ceil() * step, step)
+}
+
+/// The next larger step that reads well.
+fn nice(raw: f64) -> f64 {
+    let decade = 10f64.powf(raw.log10().floor());
+    [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|m| m * decade).find(|s| *s >= raw).unwrap_or(raw)
+}
+
 fn up_to(room: f64, values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let top = values.into_iter().filter(|v| v.is_finite()).fold(0.0f64, f64::max).max(1e-12);
-    let raw = top / 5.0;
-    let decade = 10f64.powf(raw.log10().floor());
-    let step = [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|m| m * decade).find(|s| *s >= raw).unwrap_or(raw);
+    let step = nice(top / 5.0);
     ((top * room / step).ceil() * step, step)
 }
 
@@ -123,5 +136,8 @@ mod tests {
         assert!(top >= 307.0 && (top / step).fract() == 0.0);
         assert_eq!(tight_axis([0.3, 0.98]).0, 1.0);
         assert_eq!(tight_axis([1500.0]).0, 1500.0);
+        assert_eq!(axis_around(&[70.0, 130.0]), (60.0, 140.0, 20.0));
+        let (low, high, _) = axis_around(&[-0.01, 0.01]);
+        assert!(low < -0.01 && high > 0.01);
     }
 }

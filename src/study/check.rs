@@ -227,10 +227,12 @@ pub(super) fn check(mut file: StudyFile, base: Option<&Path>, faults: &mut Fault
     Some(study)
 }
 
-/// What of a study decides on its answer: not the figures it is held against, nor another setting.
+/// What of a study decides on its answer: not its words, nor the figures it is held against, nor another setting.
 fn computed(mut study: serde_json::Value) -> serde_json::Value {
     if let Some(map) = study.as_object_mut() {
-        ["expected", "coarse"].iter().for_each(|section| drop(map.remove(*section)));
+        ["title", "question", "assumptions", "expected", "coarse"]
+            .iter()
+            .for_each(|section| drop(map.remove(*section)));
     }
     study
 }

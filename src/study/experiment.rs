@@ -31,13 +31,16 @@ struct Kept {
 pub fn experiment<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Store) -> Option<Experiments> {
     let plan = study.experiments.as_ref()?;
     let (began, done) = (Instant::now(), AtomicUsize::new(0));
+    let responses = responses(study, plan);
     let total = plan.runs.len();
     context.progress.tell(&Event::Part { done: 0, total });
     let one = |(k, run): (usize, &RunPlan)| {
         let found = kept(plan, run, context, store);
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        context.progress.tell(&Event::Part { done, total });
-        row(k, run, found)
+        if found.is_some() {
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            context.progress.tell(&Event::Part { done, total });
+        }
+        row(k, run, found, responses.len())
     };
     // One by one where the cores are taken: a search uses them itself.
     let runs: Vec<ExperimentRun> = plan.runs.par_iter().enumerate().with_max_len(1).map(one).collect();
@@ -52,7 +55,6 @@ pub fn experiment<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Sto
         refinement_ratio: f.ratio,
     };
     let factors: Vec<FactorReport> = plan.factors.iter().map(factor).collect();
-    let responses = responses(study, plan);
     Some(Experiments {
         schema_version: EXPERIMENTS_FORMAT.to_owned(),
         study_hash: study.hash.clone(),
@@ -109,12 +111,14 @@ fn kept<'r>(
     Some(found)
 }
 
-fn row(k: usize, run: &RunPlan, found: Option<Kept>) -> ExperimentRun {
+fn row(k: usize, run: &RunPlan, found: Option<Kept>, count: usize) -> ExperimentRun {
     let found = found.map(|f| (f.status, f.failure, f.feasible, f.responses));
-    let (status, failure, feasible, responses) = match found {
+    let (status, failure, feasible, mut responses) = match found {
         Some((status, failure, feasible, responses)) => (Some(status), failure, feasible, responses),
         None => (None, None, None, Vec::new()),
     };
+    // A run without an answer has a place for every response all the same.
+    responses.resize(count, None);
     ExperimentRun {
         number: k + 1,
         levels: run.levels.iter().map(|l| l.text.clone()).collect(),

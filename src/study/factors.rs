@@ -170,6 +170,9 @@ fn values(file: &mut FactorFile, path: &str, faults: &mut Faults) -> Option<Fact
         faults.add(&join(path, "values"), "needs at least two values");
         return None;
     }
+    if (1..given.len()).any(|k| given[..k].contains(&given[k])) {
+        faults.add(&join(path, "values"), "hold a value twice");
+    }
     let key = key?;
     let found: Vec<Option<(f64, String, bool)>> = given.iter().map(quantity).collect();
     let unit = found[0].as_ref().map(|q| q.1.clone());
@@ -238,7 +241,10 @@ fn ratio(factor: &Factor, path: &str, drawn: bool, faults: &mut Faults) -> Optio
     let changing = |n: &Vec<f64>| n.windows(2).all(|w| w[0] != w[1]);
     let found = (0..levels[0].set.len()).filter_map(numbers).find(changing);
     let ratios: Vec<f64> = found.iter().flat_map(|n| n.windows(2).map(|w| w[1] / w[0])).collect();
-    let first = ratios.first().copied().filter(|r| r.is_finite() && *r > 0.0)?;
+    let Some(first) = ratios.first().copied().filter(|r| r.is_finite() && *r > 0.0) else {
+        faults.add(&at, "needs levels of a number that changes from each to the next");
+        return None;
+    };
     if ratios.iter().any(|r| (r / first - 1.0).abs() > SAME_RATIO) {
         faults.add(&at, "needs levels that refine by the same ratio each");
         return None;

@@ -43,6 +43,15 @@ pub(super) struct Layout {
     factors: Vec<Factor>,
 }
 
+/// Keys that say something about a study, and sections that make many of it: no factors.
+const WORDS: [&str; 8] =
+    ["format", "title", "question", "assumptions", "expected", "coarse", "choices", "experiments"];
+
+/// Whether a path is another one or lies below it.
+fn within(above: &str, path: &str) -> bool {
+    path.strip_prefix(above).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
 fn at(key: &str) -> String {
     format!("{PATH}.{key}")
 }
@@ -85,8 +94,12 @@ pub(super) fn layout(file: &mut StudyFile, most: Option<usize>, faults: &mut Fau
         faults.get(given, &path);
         let super::Given::Value(one) = given else { continue };
         let Some(found) = factor(one, &path, drawn, faults) else { continue };
-        if let Some(twice) = found.keys().find(|k| factors.iter().any(|f| f.keys().any(|o| o == *k))) {
+        let meets = |k: &&str| factors.iter().any(|f| f.keys().any(|o| within(o, k) || within(k, o)));
+        if let Some(twice) = found.keys().find(meets) {
             faults.add(&path, format!("\"{twice}\" is varied by an earlier factor already"));
+        }
+        if let Some(key) = found.keys().find(|k| WORDS.iter().any(|w| within(w, k))) {
+            faults.add(&path, format!("\"{key}\" has no effect on an answer"));
         }
         factors.push(found);
     }
@@ -150,7 +163,8 @@ pub(super) fn experiments(
     if let Some((k, levels, first)) = wrong.into_iter().next() {
         let text = |(l, f): (&Level, &Factor)| format!("{} {}", l.text, f.unit).trim_end().to_owned();
         let texts: Vec<String> = levels.iter().zip(&layout.factors).map(text).collect();
-        let more = if others > 0 { format!(" ({others} more runs have mistakes)") } else { String::new() };
+        let more =
+            if others > 0 { format!(" ({others} more of the runs have mistakes)") } else { String::new() };
         let list = match first {
             Wrong::Mistakes(list) => list,
             Wrong::NoPlace(key) => vec![(key, "there is no such place in this study".to_owned())],

@@ -112,7 +112,11 @@ fn document(value: &Value, with: &Reading<'_>, faults: &mut Faults) -> Option<St
         }
     };
     let lists: Vec<List> = choices::lists(&file, faults);
-    let expected = expected::expected(&mut file, with.coarse, faults);
+    let mut expected = expected::expected(&mut file, with.coarse, faults);
+    if !with.set.is_empty() {
+        // They are those of the study as it is written.
+        expected.clear();
+    }
     let layout = layout::layout(&mut file, with.most_runs, faults);
     let study = check(file, with.base, faults)?;
     if !with.coarse {

@@ -176,6 +176,10 @@ pub(super) fn report(
             plan.problem.values(&y)
         })
         .collect();
+    if context.cancel.is_cancelled() {
+        // Bearings that were not simulated say nothing about the margins.
+        return None;
+    }
     let good: Vec<_> = drawn.iter().filter_map(|d| d.as_ref().ok()).collect();
     let failed = drawn.len() - good.len();
     let losses: Vec<f64> = good.iter().map(|v| v.objective).collect();

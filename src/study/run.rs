@@ -99,6 +99,15 @@ fn answered<'r>(
     cost.total = sum.0 + sum.1;
     cost.gradients = sum.1;
     let report = &mut findings.report;
+    if context.cancel.is_cancelled() && report.outcome.status != Outcome::Cancelled {
+        // The search had ended, but not everything that the study asks for beside it is there.
+        let ended = format!("{:?}", report.outcome.status).to_lowercase();
+        report.outcome.status = Outcome::Cancelled;
+        report.outcome.advice = format!(
+            "Stopped on request before everything was there that the study asks for; the search itself had ended ({ended}). The \
+             same command goes on from there."
+        );
+    }
     report.timing = ReportTiming { seconds: began.elapsed().as_secs_f64(), rivals_s };
     report.answer = headline(report);
     findings

@@ -102,7 +102,7 @@ impl Answer {
 
     /// Holds the figures the study expects against it.
     fn hold_against(&mut self, study: &Study) {
-        if study.expected.is_empty() {
+        if study.expected.is_empty() || self.is_cancelled() {
             return;
         }
         let judge =

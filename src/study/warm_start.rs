@@ -11,6 +11,8 @@ impl Study {
     /// If the report has no parameter of this study, or one in another unit.
     pub fn started_from(mut self, report: &Report) -> Result<(Self, usize), String> {
         let found = self.start_at(report)?;
+        // Figures are those of the study's own starts.
+        self.expected.clear();
         if let Some(choices) = &mut self.choices {
             for (_, variant) in &mut choices.variants {
                 variant.start_at(report)?;

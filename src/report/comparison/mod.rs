@@ -35,7 +35,7 @@ pub enum ComparisonStatus {
 pub struct Comparison {
     /// Version of this format, "stribeck-comparison/1".
     pub schema_version: String,
-    /// SHA-256 of the study with every default written out and its tables.
+    /// SHA-256 of all that decides on the answer: the study with every default and its tables, without its words.
     pub study_hash: String,
     /// Title of the study.
     pub title: String,

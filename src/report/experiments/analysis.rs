@@ -9,49 +9,101 @@
 use super::{EffectReport, ExperimentRun, FactorReport, RefinementReport, ResponseReport};
 use nalgebra::{DMatrix, DVector};
 
-/// Orders that discretisations have; beyond them three values say nothing about one.
-const ORDERS: std::ops::RangeInclusive<f64> = 0.3..=6.0;
+/// Orders that discretisations like these have; beyond them the levels are too coarse to show one.
+const ORDERS: std::ops::RangeInclusive<f64> = 0.5..=3.0;
 
-/// Straight fits through all runs with numbers, one per response that varies.
+/// How a factor enters the fit: a number by its share of the range, words by one column for each level but the first.
+enum Column {
+    Number { factor: usize, low: f64, high: f64 },
+    Level { factor: usize, text: String },
+}
+
+impl Column {
+    fn all(factors: usize, runs: &[ExperimentRun]) -> Vec<Self> {
+        let mut all = Vec::new();
+        for factor in 0..factors {
+            if let Some((low, high)) = range(runs, factor) {
+                all.push(Self::Number { factor, low, high });
+                continue;
+            }
+            if runs.iter().all(|r| r.numbers[factor].is_some()) {
+                continue;
+            }
+            let mut levels: Vec<&String> = Vec::new();
+            runs.iter().for_each(|r| {
+                if !levels.contains(&&r.levels[factor]) {
+                    levels.push(&r.levels[factor]);
+                }
+            });
+            all.extend(levels.into_iter().skip(1).map(|text| Self::Level { factor, text: text.clone() }));
+        }
+        all
+    }
+
+    fn factor(&self) -> usize {
+        match self {
+            Self::Number { factor, .. } | Self::Level { factor, .. } => *factor,
+        }
+    }
+
+    fn of(&self, run: &ExperimentRun) -> f64 {
+        match self {
+            Self::Number { factor, low, high } => {
+                run.numbers[*factor].map_or(0.0, |v| (v - low) / (high - low))
+            }
+            Self::Level { factor, text } => f64::from(u8::from(run.levels[*factor] == *text)),
+        }
+    }
+}
+
+/// Straight fits through all runs with numbers, one per response that varies; of words the largest difference of two levels.
 pub fn effects(
     factors: &[FactorReport],
     responses: &[ResponseReport],
     runs: &[ExperimentRun],
 ) -> Vec<EffectReport> {
-    let ranges: Vec<Option<(f64, f64)>> = (0..factors.len()).map(|j| range(runs, j)).collect();
-    let moved: Vec<usize> = (0..factors.len()).filter(|j| ranges[*j].is_some()).collect();
-    if moved.is_empty() {
+    let columns = Column::all(factors.len(), runs);
+    if columns.is_empty() {
         return Vec::new();
     }
     let fit = |(k, response): (usize, &ResponseReport)| {
         let known: Vec<(&ExperimentRun, f64)> =
             runs.iter().filter_map(|r| Some((r, (*r.responses.get(k)?)?))).collect();
-        if known.len() < moved.len() + 2 {
+        if known.len() < columns.len() + 2 {
             return None;
         }
-        let share = |run: &ExperimentRun, j: usize| match (ranges[j], run.numbers[j]) {
-            (Some((low, high)), Some(v)) => (v - low) / (high - low),
-            _ => 0.0,
-        };
-        let rows = DMatrix::from_fn(known.len(), moved.len() + 1, |i, c| match c {
+        let rows = DMatrix::from_fn(known.len(), columns.len() + 1, |i, c| match c {
             0 => 1.0,
-            c => share(known[i].0, moved[c - 1]),
+            c => columns[c - 1].of(known[i].0),
         });
         let y = DVector::from_iterator(known.len(), known.iter().map(|(_, y)| *y));
+        let size = y.amax();
         let found = rows.clone().svd(true, true).solve(&y, 1e-12).ok()?;
         let mean = y.mean();
         let spread = y.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
         let left = (&rows * &found - &y).norm_squared();
-        let mut changes = vec![None; factors.len()];
-        moved.iter().enumerate().for_each(|(c, j)| changes[*j] = Some(found[c + 1]));
-        let varies = spread > 1e-24 * y.norm_squared().max(f64::MIN_POSITIVE);
+        let varies = size > super::TRACE && spread > 1e-24 * y.norm_squared();
         varies.then(|| EffectReport {
             response: response.key.clone(),
             explained: (1.0 - left / spread).max(0.0),
-            changes,
+            changes: (0..factors.len()).map(|j| change(&columns, &found, j, size)).collect(),
         })
     };
     responses.iter().enumerate().filter_map(fit).collect()
+}
+
+/// What a factor does by the fit; rounding is nothing.
+fn change(columns: &[Column], found: &DVector<f64>, factor: usize, size: f64) -> Option<f64> {
+    let own: Vec<(&Column, f64)> = columns.iter().zip(found.iter().skip(1).copied()).collect();
+    let own = || own.iter().filter(|(c, _)| c.factor() == factor);
+    let value = match own().next()?.0 {
+        Column::Number { .. } => own().next()?.1,
+        Column::Level { .. } => {
+            let (low, high) = own().fold((0.0f64, 0.0f64), |(l, h), (_, v)| (l.min(*v), h.max(*v)));
+            high - low
+        }
+    };
+    Some(if value.abs() < 1e-9 * size { 0.0 } else { value })
 }
 
 /// Lowest and highest level of a factor of numbers that varies.
@@ -150,6 +202,19 @@ mod tests {
         let changes: Vec<f64> = found[0].changes.iter().map(|c| c.unwrap()).collect();
         assert!((changes[0] - 4.0).abs() < 1e-12 && (changes[1] + 4.0).abs() < 1e-12, "{changes:?}");
         assert!((found[0].explained - 1.0).abs() < 1e-12);
+        // Words: the largest difference of two levels.
+        let mut words = runs.clone();
+        for (run, (level, shift)) in
+            words.iter_mut().zip([("a", 0.0), ("b", 5.0), ("c", -2.0), ("a", 0.0), ("b", 5.0)])
+        {
+            (run.levels[1], run.numbers[1]) = (level.to_owned(), None);
+            run.responses = vec![Some(2.0 * run.numbers[0].unwrap() + shift)];
+        }
+        words.push(ExperimentRun { numbers: vec![Some(9.0), None], ..words[2].clone() });
+        words[5].responses = vec![Some(16.0)];
+        let found = effects(&[factor(None), factor(None)], &[response("y")], &words);
+        assert!((found[0].changes[0].unwrap() - 16.0).abs() < 1e-9, "{found:?}");
+        assert!((found[0].changes[1].unwrap() - 7.0).abs() < 1e-9, "{found:?}");
         let same: Vec<_> = points.iter().enumerate().map(|(k, p)| run(k + 1, p, 7.0)).collect();
         assert!(effects(&[factor(None), factor(None)], &[response("y")], &same).is_empty());
     }

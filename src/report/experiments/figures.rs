@@ -1,9 +1,8 @@
 //! Figures of experiments: responses over the factors of numbers.
 
 use super::{ExperimentRun, Experiments};
-use crate::report::figures::{even_up, scaled_across};
 use crate::report::html::units;
-use crate::report::svg::{FOUND, LIMIT, SECOND, SKY, START, THIRD, half, render, styled};
+use crate::report::svg::{FOUND, LIMIT, SECOND, SKY, START, THIRD, axis_around, half, render, styled};
 use kuva::prelude::*;
 
 /// Colours of lines that differ by another factor.
@@ -60,7 +59,15 @@ pub fn response(found: &Experiments, factor: usize, response: usize, name: &str)
     let layout = half(styled(Layout::auto_from_plots(&plots)))
         .with_x_label(labelled(&f.name, &f.unit))
         .with_y_label(labelled(&r.title, &r.unit));
-    Some(render(plots, even_up(scaled_across(layout, &across), &up), name))
+    let ((left, right, step_x), (low, high, step_y)) = (axis_around(&across), axis_around(&up));
+    let layout = layout
+        .with_x_axis_min(left)
+        .with_x_axis_max(right)
+        .with_x_tick_step(step_x)
+        .with_y_axis_min(low)
+        .with_y_axis_max(high)
+        .with_y_tick_step(step_y);
+    Some(render(plots, layout, name))
 }
 
 fn labelled(name: &str, unit: &str) -> String {

@@ -36,7 +36,7 @@ pub enum ExperimentsStatus {
 pub struct Experiments {
     /// Version of this format, "stribeck-experiments/1".
     pub schema_version: String,
-    /// SHA-256 of the study with every default written out and its tables.
+    /// SHA-256 of all that decides on the answer: the study with every default and its tables, without its words.
     pub study_hash: String,
     /// Title of the study.
     pub title: String,
@@ -120,7 +120,8 @@ pub struct EffectReport {
     pub response: String,
     /// Share of the response's variance the fit explains.
     pub explained: f64,
-    /// Change of the response from the lowest to the highest level of each factor, in its unit; none for words.
+    /// Change of the response from the lowest to the highest level of each factor, in its unit; of words the largest difference of two
+    /// levels. None for a factor that does not vary.
     pub changes: Vec<Option<f64>>,
 }
 

@@ -130,7 +130,7 @@ pub(in crate::study) const REFERENCES: &[(&str, &str)] = &[
     ),
     (
         "Owen 1995",
-        "A. B. Owen: Randomly permuted (t,m,s)-nets and (t,s)-sequences. In: Monte Carlo and Quasi-Monte Carlo          Methods in Scientific Computing, Lecture Notes in Statistics 106, Springer, New York 1995, 299-317",
+        "A. B. Owen: Randomly permuted (t,m,s)-nets and (t,s)-sequences. In: Monte Carlo and Quasi-Monte Carlo Methods in Scientific Computing, Lecture Notes in Statistics 106, Springer, New York 1995, 299-317",
     ),
     (
         "Patir and Cheng 1978",
@@ -182,7 +182,7 @@ pub(in crate::study) const REFERENCES: &[(&str, &str)] = &[
     ),
     (
         "Sobol 1967",
-        "I. M. Sobol: On the distribution of points in a cube and the approximate evaluation of integrals. USSR          Comput. Math. Math. Phys. 7 (1967) no. 4, 86-112",
+        "I. M. Sobol: On the distribution of points in a cube and the approximate evaluation of integrals. USSR Comput. Math. Math. Phys. 7 (1967) no. 4, 86-112",
     ),
     (
         "Sommerfeld 1904",
