@@ -46,7 +46,7 @@ fn a_grid_holds_every_combination_and_finds_the_best_that_is_safe() {
     let file = drive(folder.path(), "grid.toml", GRID);
     let out = folder.path().join("out");
     let text = out_of(stribeck().arg("run").arg(&file).arg("--out").arg(&out));
-    assert!(text.contains("least loss with all limits kept"), "{text}");
+    assert!(text.contains("The least loss with all limits kept"), "{text}");
     let found = report(&out);
     assert_eq!(found["status"], "complete");
     let runs = found["runs"].as_array().unwrap();

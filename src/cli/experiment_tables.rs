@@ -54,9 +54,8 @@ pub(super) fn experiments(found: &Experiments) -> String {
         }
         text += &format!("\n{rows}\n");
     }
-    if let Some(best) = found.best.and_then(|n| found.runs.get(n - 1)) {
-        let loss = maybe(best.responses.first().copied().flatten());
-        text += &format!("\nleast loss with all limits kept: run {} with {loss} W\n", best.number);
+    for line in &found.answer {
+        text += &format!("{line}\n");
     }
     text + &format!("{} runs, {} s\n", found.runs.len(), short(found.timing.seconds))
 }

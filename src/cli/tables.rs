@@ -58,7 +58,9 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
         text += &format!("{}\n\n", limits(report));
     }
     text += &design_tables(report);
-    if let (Some(start), Some(optimum)) = (&report.objective.start, &report.objective.optimum) {
+    if report.outcome.status == Outcome::Simulated {
+        report.answer.iter().for_each(|line| text += &format!("{line}\n"));
+    } else if let (Some(start), Some(optimum)) = (&report.objective.start, &report.objective.optimum) {
         text += &format!(
             "{}: {} W at the start, {} W at the design{}\n",
             if report.objective.worst_case.is_empty() {

@@ -44,6 +44,8 @@ pub struct Characteristic {
     pub question: Option<String>,
     /// How it ended.
     pub status: CharacteristicStatus,
+    /// The answer in sentences.
+    pub answer: Vec<String>,
     /// Why rows are missing.
     pub failures: Vec<String>,
     /// Where the reference values are from.

@@ -457,6 +457,8 @@ pub struct Curves {
     pub pressure_map_mpa: Vec<Vec<f64>>,
     /// Share of the gap filled with oil at the same instant; empty unless the film keeps account of its oil.
     pub fill_map: Vec<Vec<f64>>,
+    /// What the shapes of shell and journal add to the gap at the start of the cycle, um: rows around, columns across; empty without shapes.
+    pub shape_um: Vec<Vec<f64>>,
     /// Derivative of the mean loss by the local gap; none for a film without cells.
     pub sensitivity: Option<SensitivityMaps>,
     /// Width of the bearing, mm.

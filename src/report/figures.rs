@@ -54,11 +54,45 @@ impl<'a> Series<'a> {
     }
 }
 
+/// Largest values over all operating points of a bearing: its figures are compared, so they have one scale.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Tops {
+    film_um: f64,
+    pressure_mpa: f64,
+    contact_mpa: f64,
+    loss_w: f64,
+    load_kn: f64,
+    /// Film pressure of the map, MPa.
+    pub map_mpa: f64,
+}
+
+impl Tops {
+    /// Those of a bearing.
+    pub fn of<'c>(curves: impl Iterator<Item = &'c Curves>) -> Self {
+        let mut tops = Self::default();
+        let up = |top: &mut f64, values: &[f64]| {
+            *top = values.iter().copied().filter(|v| v.is_finite()).fold(*top, f64::max);
+        };
+        for c in curves {
+            up(&mut tops.film_um, &c.film_min_um);
+            up(&mut tops.film_um, &c.start_film_min_um);
+            up(&mut tops.pressure_mpa, &c.pressure_max_mpa);
+            up(&mut tops.pressure_mpa, &c.start_pressure_max_mpa);
+            up(&mut tops.contact_mpa, &c.contact_max_mpa);
+            [&c.loss_w, &c.start_loss_w, &c.dissipation_w].into_iter().for_each(|v| up(&mut tops.loss_w, v));
+            let size: Vec<f64> = c.load_kn.iter().map(|l| l[0].hypot(l[1])).collect();
+            up(&mut tops.load_kn, &size);
+            c.pressure_map_mpa.iter().for_each(|row| up(&mut tops.map_mpa, row));
+        }
+        tops
+    }
+}
+
 /// A quantity over the cycle, with a limit if there is one. A single curve needs no legend.
 fn over_angle(
     c: &Curves,
     series: &[Series],
-    limit: Option<f64>,
+    (limit, top): (Option<f64>, f64),
     frame: fn(Layout) -> Layout,
     label: &str,
     name: &str,
@@ -66,7 +100,8 @@ fn over_angle(
     let shown: Vec<&Series> = series.iter().filter(|s| s.values.len() == c.crank_angle_deg.len()).collect();
     let legend = |plot: LinePlot, s: &Series| if shown.len() > 1 { plot.with_legend(s.legend) } else { plot };
     let plots: Vec<Plot> = shown.iter().map(|s| legend(s.plot(c), s).into()).collect();
-    let (top, step) = axis(shown.iter().flat_map(|s| s.values.iter().copied()).chain(limit));
+    let values = shown.iter().flat_map(|s| s.values.iter().copied());
+    let (top, step) = axis(values.chain(limit).chain([top]));
     let mut layout = over_cycle(frame(styled(Layout::auto_from_plots(&plots))), cycle_deg(c))
         .with_y_label(label)
         .with_y_axis_min(0.0)
@@ -80,25 +115,25 @@ fn over_angle(
 }
 
 /// Smallest film thickness over the cycle.
-pub fn film(c: &Curves, limit: Option<f64>, name: &str) -> String {
+pub fn film(c: &Curves, limit: Option<f64>, tops: &Tops, name: &str) -> String {
     let series =
         [Series::new(&c.start_film_min_um, START, "start"), Series::new(&c.film_min_um, FOUND, "design")];
-    over_angle(c, &series, limit, half, "film thickness [µm]", name)
+    over_angle(c, &series, (limit, tops.film_um), half, "film thickness [µm]", name)
 }
 
 /// Largest film pressure over the cycle.
-pub fn pressure(c: &Curves, limit: Option<f64>, name: &str) -> String {
+pub fn pressure(c: &Curves, limit: Option<f64>, tops: &Tops, name: &str) -> String {
     let series = [
         Series::new(&c.start_pressure_max_mpa, START, "start"),
         Series::new(&c.pressure_max_mpa, FOUND, "design"),
     ];
-    over_angle(c, &series, limit, half, "film pressure [MPa]", name)
+    over_angle(c, &series, (limit, tops.pressure_mpa), half, "film pressure [MPa]", name)
 }
 
 /// Largest contact pressure over the cycle.
-pub fn contact(c: &Curves, limit: Option<f64>, name: &str) -> String {
+pub fn contact(c: &Curves, limit: Option<f64>, tops: &Tops, name: &str) -> String {
     let series = [Series::new(&c.contact_max_mpa, FOUND, "design")];
-    over_angle(c, &series, limit, half, "contact pressure [MPa]", name)
+    over_angle(c, &series, (limit, tops.contact_mpa), half, "contact pressure [MPa]", name)
 }
 
 /// Cylinder pressure over the cycle, (degrees, MPa).
@@ -227,7 +262,7 @@ fn column(
 }
 
 /// Friction loss over the cycle; split into its parts where surfaces touch.
-pub fn loss(c: &Curves, name: &str) -> String {
+pub fn loss(c: &Curves, tops: &Tops, name: &str) -> String {
     let hydrodynamic: Vec<f64> = c.loss_w.iter().zip(&c.contact_loss_w).map(|(l, k)| l - k).collect();
     let mut series = vec![
         Series::new(&c.start_loss_w, START, "start"),
@@ -238,13 +273,13 @@ pub fn loss(c: &Curves, name: &str) -> String {
         series.push(Series::part(&hydrodynamic, SKY, "design: hydrodynamic"));
         series.push(Series::part(&c.contact_loss_w, THIRD, "design: contact"));
     }
-    over_angle(c, &series, None, legend_below, "friction loss [W]", name)
+    over_angle(c, &series, (None, tops.loss_w), legend_below, "friction loss [W]", name)
 }
 
 /// Load of the bearing over the cycle.
-pub fn load(c: &Curves, name: &str) -> String {
+pub fn load(c: &Curves, tops: &Tops, name: &str) -> String {
     let size: Vec<f64> = c.load_kn.iter().map(|l| l[0].hypot(l[1])).collect();
-    over_angle(c, &[Series::new(&size, LIMIT, "load")], None, half, "load [kN]", name)
+    over_angle(c, &[Series::new(&size, LIMIT, "load")], (None, tops.load_kn), half, "load [kN]", name)
 }
 
 /// Orbit of the journal in the clearance circle, at equal scale.

@@ -1,6 +1,7 @@
 //! `report.html`: one self-contained page, the answer first, then the evidence.
 
 use super::data::TOUCH_MPA;
+use super::figures::Tops;
 use super::maps::Frame;
 use super::{BearingRunningIn, Findings, Report, ReportFile, figures, maps, run_in_figures};
 use minijinja::value::Serde;
@@ -30,6 +31,7 @@ struct CycleFigures {
     load: String,
     pressure_map: String,
     fill_map: Option<String>,
+    shape_map: Option<String>,
     sensitivity_maps: Option<[String; 2]>,
 }
 
@@ -72,19 +74,26 @@ fn cycle_figures(findings: &Findings) -> Vec<CycleFigures> {
         .curves
         .iter()
         .enumerate()
-        .map(|(k, c)| CycleFigures {
+        .map(|(k, c)| (k, c, Tops::of(findings.curves.iter().filter(|o| o.bearing == c.bearing))))
+        .map(|(k, c, tops)| CycleFigures {
             bearing: c.bearing.clone(),
             operating_point: c.operating_point.clone(),
             orbit: figures::orbit(c, &format!("orbit-{k}")),
-            film: figures::film(c, limit("min-film-thickness", &c.bearing), &format!("film-{k}")),
-            pressure: figures::pressure(c, limit("max-film-pressure", &c.bearing), &format!("pressure-{k}")),
+            film: figures::film(c, limit("min-film-thickness", &c.bearing), &tops, &format!("film-{k}")),
+            pressure: figures::pressure(
+                c,
+                limit("max-film-pressure", &c.bearing),
+                &tops,
+                &format!("pressure-{k}"),
+            ),
             contact: c.touches().then(|| {
-                figures::contact(c, limit("max-contact-pressure", &c.bearing), &format!("contact-{k}"))
+                figures::contact(c, limit("max-contact-pressure", &c.bearing), &tops, &format!("contact-{k}"))
             }),
-            loss: figures::loss(c, &format!("loss-{k}")),
-            load: figures::load(c, &format!("load-{k}")),
-            pressure_map: maps::pressure_map(c, &format!("map-{k}")),
+            loss: figures::loss(c, &tops, &format!("loss-{k}")),
+            load: figures::load(c, &tops, &format!("load-{k}")),
+            pressure_map: maps::pressure_map(c, tops.map_mpa, &format!("map-{k}")),
             fill_map: maps::fill_map(c, &format!("fill-{k}")),
+            shape_map: maps::shape_map(c, &format!("shape-{k}")),
             sensitivity_maps: maps::sensitivity_maps(c, &format!("sensitivity-{k}")),
         })
         .collect()

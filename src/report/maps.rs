@@ -55,9 +55,8 @@ fn signed(v: f64) -> String {
     format!("rgb({r},{g},{b})")
 }
 
-/// Film pressure over the unwrapped bearing at the instant of its maximum.
-pub fn pressure_map(c: &Curves, name: &str) -> String {
-    let top = c.pressure_map_mpa.iter().flatten().copied().fold(0.0f64, f64::max);
+/// Film pressure over the unwrapped bearing at the instant of its maximum, coloured up to `top` MPa.
+pub fn pressure_map(c: &Curves, top: f64, name: &str) -> String {
     map(c, &c.pressure_map_mpa, Scale::upwards(top), Frame::Shell, "film pressure [MPa]", name)
 }
 
@@ -65,6 +64,13 @@ pub fn pressure_map(c: &Curves, name: &str) -> String {
 pub fn fill_map(c: &Curves, name: &str) -> Option<String> {
     (!c.fill_map.is_empty())
         .then(|| map(c, &c.fill_map, Scale::upwards(1.0), Frame::Shell, "filled share of the gap", name))
+}
+
+/// What the shapes add to the gap; none without shapes.
+pub fn shape_map(c: &Curves, name: &str) -> Option<String> {
+    let size = c.shape_um.iter().flatten().fold(0.0f64, |a, v| a.max(v.abs()));
+    let label = "added to the gap [\u{b5}m]";
+    (size > 0.0).then(|| map(c, &c.shape_um, Scale::both_ways(size), Frame::Shell, label, name))
 }
 
 /// Where a picture of the unwrapped bearing is cut: its first row and the angle there. Not where the pressure is:

@@ -11,6 +11,7 @@ mod design_csv;
 mod experiments;
 mod figures;
 mod headline;
+mod headlines;
 mod html;
 mod index;
 mod maps;
@@ -39,6 +40,7 @@ pub use experiments::{
     refinements,
 };
 pub use headline::headline;
+pub use headlines::{characteristic_headline, comparison_headline, experiments_headline};
 pub use html::{html, plain_page};
 pub use index::{IndexEntry, index_html};
 pub use running_in::{

@@ -9,11 +9,14 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// Name of a surface and its grid: the shell with film pressure and fill at the instant of the largest pressure and the
-/// derivative of the mean loss by the local gap; the journal with the latter. Nothing for a film without fields.
+/// what shapes add to the gap, and the derivative of the mean loss by the local gap; the journal with the latter. Nothing for a film without fields.
 pub fn film_vtk(c: &Curves) -> Vec<(&'static str, String)> {
     let mut shell: Vec<(&str, &[Vec<f64>])> = vec![("film_pressure_mpa", &c.pressure_map_mpa)];
     if !c.fill_map.is_empty() {
         shell.push(("fill", &c.fill_map));
+    }
+    if !c.shape_um.is_empty() {
+        shell.push(("shape_um", &c.shape_um));
     }
     let Some(s) = &c.sensitivity else { return Vec::new() };
     shell.push(("loss_per_gap_w_per_um_cm2", &s.shell_w_per_um_cm2));
@@ -25,7 +28,8 @@ fn grid(c: &Curves, fields: &[(&str, &[Vec<f64>])]) -> String {
     let (around, across) = (fields[0].1.len(), fields[0].1.first().map_or(0, Vec::len));
     let extent = format!("0 {across} 0 {around} 0 0");
     let mut text = format!(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"0.1\">\n<StructuredGrid WholeExtent=\"{extent}\">\n<Piece Extent=\"{extent}\">\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n"
+        "<?xml version=\"1.0\"?>\n<!-- {} -->\n<VTKFile type=\"StructuredGrid\" version=\"0.1\">\n<StructuredGrid WholeExtent=\"{extent}\">\n<Piece Extent=\"{extent}\">\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n",
+        format!("{}, {}", c.bearing, c.operating_point).replace("--", "- -"),
     );
     for i in 0..=around {
         // Cells stand around their centres, at whole multiples of the angle between columns.

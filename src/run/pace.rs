@@ -25,6 +25,8 @@ impl Pace {
                 let each = self.began.elapsed().as_secs_f64() / *done as f64;
                 self.left = Some(each * (total - done) as f64);
             }
+            // What came before says nothing about what comes now.
+            Event::Stage { .. } => self.left = None,
             Event::Iteration(i) if i.kkt.is_finite() => {
                 self.left = self.by_residual(i.kkt);
                 self.first_kkt.get_or_insert(i.kkt);
@@ -76,6 +78,8 @@ mod tests {
         assert!(pace.left_s().is_some());
         pace.watch(&at(1e-6));
         assert_eq!(pace.left_s(), Some(0.0));
+        pace.watch(&Event::Stage { name: "checking the design".to_owned() });
+        assert_eq!(pace.left_s(), None);
         pace.watch(&Event::Part { done: 0, total: 4 });
         pace.watch(&Event::Part { done: 4, total: 4 });
         assert_eq!(pace.left_s(), Some(0.0));

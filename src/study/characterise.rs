@@ -9,7 +9,7 @@ use crate::film::{FilmSite, SteadyState, steady_at};
 use crate::orbit::{Orbit, settle};
 use crate::report::{
     CHARACTERISTIC_FORMAT, Characteristic, CharacteristicColumn, CharacteristicStatus, CharacteristicTable,
-    ReportTiming,
+    ReportTiming, characteristic_headline,
 };
 use crate::run::{Event, RunContext};
 use std::f64::consts::TAU;
@@ -37,12 +37,13 @@ pub fn characterise(study: &Study, context: RunContext<'_>) -> Option<Characteri
         (false, true) => CharacteristicStatus::Complete,
         (false, false) => CharacteristicStatus::Incomplete,
     };
-    Some(Characteristic {
+    let mut found = Characteristic {
         schema_version: CHARACTERISTIC_FORMAT.to_owned(),
         study_hash: study.hash.clone(),
         title: study.file.title.value().cloned().unwrap_or_default(),
         question: study.file.question.value().cloned(),
         status,
+        answer: Vec::new(),
         failures: work.failures,
         reference_source: plan.source.clone(),
         tables,
@@ -50,7 +51,9 @@ pub fn characterise(study: &Study, context: RunContext<'_>) -> Option<Characteri
         timing: ReportTiming { seconds: began.elapsed().as_secs_f64(), rivals_s: Vec::new() },
         assumptions: assumptions(study),
         provenance: provenance(study),
-    })
+    };
+    found.answer = characteristic_headline(&found);
+    Some(found)
 }
 
 struct Work<'a> {

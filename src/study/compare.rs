@@ -14,7 +14,7 @@ use crate::optimise::EvaluationError;
 use crate::orbit::{Orbit, settle};
 use crate::report::{
     COMPARISON_FORMAT, CaseTiming, ComparedCase, Comparison, ComparisonStatus, EngineCost, EngineTime,
-    SpeedUp, Timing,
+    SpeedUp, Timing, comparison_headline,
 };
 use crate::run::{Event, RunContext};
 use std::time::Instant;
@@ -39,12 +39,13 @@ pub fn compare(study: &Study, context: RunContext<'_>) -> Option<Comparison> {
         (_, false) => ComparisonStatus::Incomplete,
     };
     timing.seconds = began.elapsed().as_secs_f64();
-    Some(Comparison {
+    let mut found = Comparison {
         schema_version: COMPARISON_FORMAT.to_owned(),
         study_hash: study.hash.clone(),
         title: study.file.title.value().cloned().unwrap_or_default(),
         question: study.file.question.value().cloned(),
         status,
+        answer: Vec::new(),
         failures,
         engines: wanted.engines.clone(),
         perturbation: study.perturbation,
@@ -53,7 +54,9 @@ pub fn compare(study: &Study, context: RunContext<'_>) -> Option<Comparison> {
         timing,
         assumptions: assumptions(study),
         provenance: provenance(study),
-    })
+    };
+    found.answer = comparison_headline(&found);
+    Some(found)
 }
 
 /// One case after the other; what is finished stays if one fails.

@@ -10,7 +10,7 @@ use super::run::{assumptions, provenance, run_saved, simulate};
 use crate::optimise::Outcome;
 use crate::report::{
     EXPERIMENTS_FORMAT, ExperimentRun, Experiments, ExperimentsStatus, FactorReport, Report, ReportTiming,
-    ResponseReport, effects, refinements,
+    ResponseReport, effects, experiments_headline, refinements,
 };
 use crate::run::{Event, RunContext, Silent, Store, Within};
 use rayon::prelude::*;
@@ -55,12 +55,13 @@ pub fn experiment<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Sto
         refinement_ratio: f.ratio,
     };
     let factors: Vec<FactorReport> = plan.factors.iter().map(factor).collect();
-    Some(Experiments {
+    let mut found = Experiments {
         schema_version: EXPERIMENTS_FORMAT.to_owned(),
         study_hash: study.hash.clone(),
         title: study.file.title.value().cloned().unwrap_or_default(),
         question: study.file.question.value().cloned(),
         status,
+        answer: Vec::new(),
         plan: word(plan.plan),
         each: word(plan.each),
         best: best(&runs),
@@ -73,7 +74,9 @@ pub fn experiment<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Sto
         timing: ReportTiming { seconds: began.elapsed().as_secs_f64(), rivals_s: Vec::new() },
         assumptions: assumptions(study),
         provenance: provenance(study),
-    })
+    };
+    found.answer = experiments_headline(&found);
+    Some(found)
 }
 
 fn word(of: impl Serialize) -> String {

@@ -95,10 +95,20 @@ pub(super) fn curves(
         load_kn: now.load_kn,
         pressure_map_mpa: now.map_mpa,
         fill_map: now.fill_map,
+        shape_um: shape_um(&model),
         sensitivity: None,
         width_mm: model.setup().width_m * 1e3,
         diameter_mm: model.setup().diameter_m * 1e3,
     })
+}
+
+/// What the shapes add to the gap at the start of the cycle; empty without shapes or cells.
+fn shape_um(model: &JournalBearing) -> Vec<Vec<f64>> {
+    let (_, shape_m) = model.still_input([0.0; 2], model.setup().speed_rad_s);
+    match model.film().mesh() {
+        Some(mesh) if shape_m.iter().any(|v| *v != 0.0) => mesh.map(shape_m.iter().map(|v| v * 1e6)),
+        _ => Vec::new(),
+    }
 }
 
 #[derive(Default)]

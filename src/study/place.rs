@@ -60,10 +60,17 @@ pub(super) fn find<'v>(root: &'v Value, path: &str) -> Option<&'v Value> {
     Some(at)
 }
 
-/// Puts a value at a path. Sections on the way that are not written are made; lists must be long enough.
+/// Puts a value at a path. Sections on the way that are not written are made, but no bearing is; lists must be long enough.
 pub(super) fn put(root: &mut Value, path: &str, value: Value) -> Option<()> {
     let steps = steps(path)?;
     if steps.is_empty() {
+        return None;
+    }
+    let named = |step: Option<&Step<'_>>, table: &Value| match step {
+        Some(Step::Key(name)) => table.get(name).is_some(),
+        _ => true,
+    };
+    if steps[0] == Step::Key("bearings") && steps.len() > 2 && !named(steps.get(1), &root["bearings"]) {
         return None;
     }
     let mut at = root;
@@ -106,7 +113,7 @@ mod tests {
         assert!(put(&mut value, "s.t", json!("u")).is_some());
         assert!(put(&mut value, "a[name=x].v", json!(1)).is_some());
         assert_eq!(value, json!({ "a": [{ "name": "x", "v": 1 }], "s": { "t": "u" } }));
-        for nowhere in ["", "a[1].v", "s.t.u", "a.b", "a[name=q]"] {
+        for nowhere in ["", "bearings.x.width", "a[1].v", "s.t.u", "a.b", "a[name=q]"] {
             assert_eq!(put(&mut value, nowhere, json!(0)), None, "{nowhere}");
         }
     }

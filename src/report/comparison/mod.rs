@@ -43,6 +43,8 @@ pub struct Comparison {
     pub question: Option<String>,
     /// How it ended.
     pub status: ComparisonStatus,
+    /// The answer in sentences.
+    pub answer: Vec<String>,
     /// What could not be computed, and why.
     pub failures: Vec<String>,
     /// Engines compared.

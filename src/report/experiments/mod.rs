@@ -44,6 +44,8 @@ pub struct Experiments {
     pub question: Option<String>,
     /// How it ended.
     pub status: ExperimentsStatus,
+    /// The answer in sentences.
+    pub answer: Vec<String>,
     /// Layout in words: "grid", "latin-hypercube", "sobol".
     pub plan: String,
     /// What was done with every study: "simulate" or "search".

@@ -4,8 +4,8 @@ use super::{DesignPair, LeafComparison, LimitSide, LimitState, SideBySide};
 use crate::optimise::Outcome;
 use crate::report::{Report, short};
 
-/// Relative difference below which two numbers are called the same.
-const SAME: f64 = 1e-9;
+/// Relative difference below which two numbers are called the same: what the tolerance of a search leaves open.
+const SAME: f64 = 1e-5;
 /// Broken limits that are named one by one.
 const NAMED: usize = 2;
 
