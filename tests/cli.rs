@@ -1,15 +1,8 @@
 //! The command line as users meet it.
 
-use crate::common::{COARSE, SMOOTH, copied_study, here};
-use assert_cmd::Command;
+use crate::common::{COARSE, SMOOTH, copied_study, here, stribeck};
 use std::path::PathBuf;
 use std::time::Duration;
-
-fn stribeck() -> Command {
-    let mut command = Command::cargo_bin("stribeck").unwrap();
-    command.timeout(Duration::from_secs(300)).env("NO_COLOR", "1");
-    command
-}
 
 /// A copy of the smooth study, changed as text, in a folder of its own with its data.
 fn study(folder: &tempfile::TempDir, changes: &[(&str, &str)]) -> PathBuf {

@@ -1,17 +1,9 @@
 //! Reports as their readers get them: whole pages whose links lead somewhere, the same bytes on every rerun.
 
-use crate::common::{COARSE, SMOOTH, copied_study};
+use crate::common::{COARSE, SMOOTH, copied_study, stribeck};
 use crate::studies::gallery;
-use assert_cmd::Command;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-fn stribeck() -> Command {
-    let mut command = Command::cargo_bin("stribeck").unwrap();
-    command.timeout(Duration::from_secs(300)).env("NO_COLOR", "1");
-    command
-}
 
 /// Values of an attribute in a page.
 fn attributes<'t>(page: &'t str, name: &str) -> Vec<&'t str> {

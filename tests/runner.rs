@@ -1,17 +1,11 @@
 //! The runner: folders, what was computed before, experiments that are killed, keys that are set, work that is estimated.
 
-use crate::common::{COARSE, SMOOTH, copied_study, here};
+use crate::common::{COARSE, SMOOTH, copied_study, here, stribeck};
 use assert_cmd::Command;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
-
-fn stribeck() -> Command {
-    let mut command = Command::cargo_bin("stribeck").unwrap();
-    command.timeout(Duration::from_secs(300)).env("NO_COLOR", "1");
-    command
-}
 
 fn out_of(command: &mut Command) -> String {
     String::from_utf8(command.assert().success().get_output().stdout.clone()).unwrap()

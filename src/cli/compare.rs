@@ -165,9 +165,7 @@ fn limits(pairs: &[LimitPair]) -> String {
             "-" => "-".to_owned(),
             text => format!("{} {text}", l.sense),
         };
-        let state = |side: &Option<LimitSide>| {
-            side.map_or_else(|| "-".to_owned(), |s| word(serde_json::to_value(s.state)))
-        };
+        let state = |side: &Option<LimitSide>| side.map_or_else(|| "-".to_owned(), |s| word(s.state));
         rows.add_row([
             l.quantity.clone(),
             of.join(", "),

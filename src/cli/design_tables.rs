@@ -84,7 +84,7 @@ fn choices(report: &Report) -> Option<String> {
     for r in &c.runs {
         rows.add_row([
             r.options.join(", "),
-            word(serde_json::to_value(r.status)),
+            word(r.status),
             maybe(r.loss_w),
             r.violation.map_or_else(String::new, |v| format!("{v:.1e}")),
             r.simulations.to_string(),

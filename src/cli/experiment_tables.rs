@@ -1,29 +1,25 @@
 //! Experiments as tables for the terminal.
 
 use super::tables::{maybe, table, word};
-use crate::report::{Experiments, short};
+use crate::report::{Experiments, short, titled};
 
 /// Runs that are printed; the others stand in the report.
 const PRINTED: usize = 60;
 
 /// Runs, what refinement tells, the best run.
 pub(super) fn experiments(found: &Experiments) -> String {
-    let with_unit = |name: &str, unit: &str| match unit {
-        "" | "1" => name.to_owned(),
-        unit => format!("{name} [{unit}]"),
-    };
     let mut head = vec!["run".to_owned()];
-    head.extend(found.factors.iter().map(|f| with_unit(&f.name, &f.unit)));
+    head.extend(found.factors.iter().map(|f| titled(&f.name, &f.unit)));
     head.extend(["outcome".to_owned(), "limits".to_owned()]);
     // What is the same in all runs needs no column.
     let mut shown = found.shown();
     shown.retain(|k| *k == 0 || varies(found, *k));
-    head.extend(shown.iter().map(|k| with_unit(&found.responses[*k].title, &found.responses[*k].unit)));
+    head.extend(shown.iter().map(|k| titled(&found.responses[*k].title, &found.responses[*k].unit)));
     let mut rows = table(&head.iter().map(String::as_str).collect::<Vec<_>>());
     for run in found.runs.iter().take(PRINTED) {
         let mut row = vec![run.number.to_string()];
         row.extend(run.levels.iter().cloned());
-        row.push(run.status.map_or_else(|| "not begun".to_owned(), |s| word(serde_json::to_value(s))));
+        row.push(run.status.map_or_else(|| "not begun".to_owned(), word));
         let limits = run.feasible.map_or("-", |kept| if kept { "kept" } else { "broken" });
         row.push(limits.to_owned());
         row.extend(shown.iter().map(|k| maybe(run.responses.get(*k).copied().flatten())));

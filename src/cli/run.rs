@@ -73,8 +73,7 @@ struct End {
 pub(super) fn run(a: &RunArguments) -> Result<u8, Stop> {
     let many = a.files.len() > 1 || a.files.iter().any(|f| f.is_dir());
     if many && (a.start_from.is_some() || a.json) {
-        let words = "--start-from and --json go with a single study";
-        eprintln!("error: {words}");
+        eprintln!("error: --start-from and --json go with a single study");
         return Ok(EXIT_STUDY);
     }
     let jobs = jobs(a, many)?;
@@ -178,17 +177,15 @@ fn one(job: &Job, a: &RunArguments, many: bool, cancel: &Cancel, display: &Displ
     let task = if a.simulate { Task::Simulation } else { Task::Answer };
     let stamp = Stamp::new(&job.folder, &job.study, task);
     let store = FolderStore(job.folder.clone());
-    match a.fresh {
-        true => store.forget(),
-        false => {
-            if job.study.experiments().next().is_some() {
-                store.kept_by(&program());
-            }
-            if let Some(done) = stamp.done() {
-                display.end(&job.name, end_line(&done, job, true));
-                return Ok(End { told: done.told.clone(), done, before: true });
-            }
-        }
+    if a.fresh {
+        store.forget();
+    }
+    if job.study.experiments().next().is_some() {
+        store.kept_by(&program());
+    }
+    if let Some(done) = stamp.done().filter(|_| !a.fresh) {
+        display.end(&job.name, end_line(&done, job, true));
+        return Ok(End { told: done.told.clone(), done, before: true });
     }
     if cancel.is_cancelled() {
         return Err(Stop::Simulation(EvaluationError::Cancelled));

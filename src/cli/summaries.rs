@@ -2,49 +2,21 @@
 
 use super::stamp::Done;
 use super::tables::{maybe, table};
-use crate::report::{IndexEntry, short};
+use crate::report::{IndexEntry, Report, short};
 use crate::study::Answer;
 
 /// An answer in the few numbers of a list.
 pub(super) fn done(found: &Answer, coarse: bool, told: String, code: u8) -> Done {
-    let (title, loss_w, saving_percent, seconds) = match found {
-        Answer::Design(f) => {
-            let o = &f.report.objective;
-            let minimised = f.report.running_in.as_ref().and_then(|r| r.minimised.as_ref());
-            if let Some(m) = minimised {
-                let loss = (m.unit == "W").then_some(m.optimum);
-                let saving = m.saving_percent.filter(|_| m.start_violation.is_none_or(|v| v <= 1e-6));
-                return listed(
-                    found,
-                    (f.report.title.clone(), loss, saving, f.report.timing.seconds),
-                    coarse,
-                    told,
-                    code,
-                );
-            }
-            let loss = o.optimum.as_ref().map(|l| l.total_w);
-            // What a start that breaks its limits loses is no measure.
-            let saving = o.saving_percent.filter(|_| o.start_violation.is_none_or(|v| v <= 1e-6));
-            (f.report.title.clone(), loss, saving, f.report.timing.seconds)
-        }
-        Answer::Characteristic(f) => (f.title.clone(), None, None, f.timing.seconds),
-        Answer::Comparison(f) => (f.title.clone(), None, None, f.timing.seconds),
+    let (title, (loss_w, saving_percent), seconds) = match found {
+        Answer::Design(f) => (f.report.title.clone(), loss_and_saving(&f.report), f.report.timing.seconds),
+        Answer::Characteristic(f) => (f.title.clone(), (None, None), f.timing.seconds),
+        Answer::Comparison(f) => (f.title.clone(), (None, None), f.timing.seconds),
         Answer::Experiments(f) => {
             let best = f.best.and_then(|n| f.runs.get(n - 1)?.responses.first().copied().flatten());
-            (f.title.clone(), best, None, f.timing.seconds)
+            (f.title.clone(), (best, None), f.timing.seconds)
         }
-        Answer::Gradient(_) => (String::new(), None, None, 0.0),
+        Answer::Gradient(_) => (String::new(), (None, None), 0.0),
     };
-    listed(found, (title, loss_w, saving_percent, seconds), coarse, told, code)
-}
-
-fn listed(
-    found: &Answer,
-    (title, loss_w, saving_percent, seconds): (String, Option<f64>, Option<f64>, f64),
-    coarse: bool,
-    told: String,
-    code: u8,
-) -> Done {
     let expected = found.expected();
     let entry = IndexEntry {
         name: String::new(),
@@ -59,6 +31,18 @@ fn listed(
         seconds,
     };
     Done { code, told, entry }
+}
+
+/// What was minimised, W, and its saving, per cent; what a start that breaks its limits loses is no measure.
+fn loss_and_saving(report: &Report) -> (Option<f64>, Option<f64>) {
+    let fair = |saving: Option<f64>, broken: Option<f64>| saving.filter(|_| broken.is_none_or(|v| v <= 1e-6));
+    match report.running_in.as_ref().and_then(|r| r.minimised.as_ref()) {
+        Some(m) => ((m.unit == "W").then_some(m.optimum), fair(m.saving_percent, m.start_violation)),
+        None => {
+            let o = &report.objective;
+            (o.optimum.as_ref().map(|l| l.total_w), fair(o.saving_percent, o.start_violation))
+        }
+    }
 }
 
 /// The list of a run of many.

@@ -2,7 +2,7 @@
 
 use super::design_tables::design_tables;
 use crate::optimise::Outcome;
-use crate::report::{AtBound, Characteristic, CharacteristicColumn, Report, short};
+use crate::report::{AtBound, Characteristic, CharacteristicColumn, Report, short, titled};
 use crate::study::{EngineComparison, EngineRow};
 use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 use owo_colors::OwoColorize;
@@ -23,10 +23,7 @@ pub(super) fn maybe(value: Option<f64>) -> String {
 
 /// Design, limits and loss of a run.
 pub(super) fn summary(report: &Report, colour: bool) -> String {
-    let status = match serde_json::to_value(report.outcome.status) {
-        Ok(serde_json::Value::String(name)) => name.replace('-', " "),
-        _ => String::new(),
-    };
+    let status = word(report.outcome.status);
     let shown = match (colour, report.outcome.status) {
         (true, Outcome::Converged) => status.green().bold().to_string(),
         (true, _) => status.red().bold().to_string(),
@@ -114,7 +111,7 @@ pub(super) fn summary(report: &Report, colour: bool) -> String {
         let limit = format!("{} {} [{}]", front.quantity, front.sense, front.unit);
         let mut rows = table(&[&limit, "loss [W]", "price [W/unit]", "outcome", "simulations"]);
         for p in &front.points {
-            let status = word(serde_json::to_value(p.status));
+            let status = word(p.status);
             let (loss, price) = (maybe(p.loss_w), maybe(p.price_w_per_unit));
             rows.add_row([short(p.limit), loss, price, status, p.simulations.to_string()]);
         }
@@ -143,11 +140,8 @@ fn saving(report: &Report) -> String {
 }
 
 /// A word of the report's format as one reads it.
-pub(super) fn word(value: serde_json::Result<serde_json::Value>) -> String {
-    match value {
-        Ok(serde_json::Value::String(name)) => name.replace('-', " "),
-        _ => String::new(),
-    }
+pub(super) fn word(of: impl serde::Serialize) -> String {
+    crate::report::word(of).replace('-', " ")
 }
 
 fn rivals(report: &Report) -> Table {
@@ -172,7 +166,7 @@ fn rivals(report: &Report) -> Table {
             } else {
                 r.engine.as_str().to_owned()
             },
-            word(serde_json::to_value(r.status)),
+            word(r.status),
             maybe(r.loss_w),
             small(r.violation),
             small(r.kkt),
@@ -223,10 +217,7 @@ pub(super) fn characteristic(found: &Characteristic) -> String {
         text += &format!("missing: {reason}\n");
     }
     for t in &found.tables {
-        let unit = |c: &CharacteristicColumn| match c.unit.as_str() {
-            "1" => c.title.clone(),
-            unit => format!("{} [{unit}]", c.title),
-        };
+        let unit = |c: &CharacteristicColumn| titled(&c.title, &c.unit);
         let mut head = vec![unit(&t.varied)];
         for c in &t.columns {
             head.push(unit(c));

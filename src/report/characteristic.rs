@@ -2,7 +2,7 @@
 //!
 //! Content of `report.json` of a study that tabulates instead of optimising, its CSV and its page.
 
-use super::csv_file::written;
+use super::csv_file::{maybe, written};
 use super::figures;
 use super::html::{STYLE, environment};
 use super::{Assumption, ExpectedReport, Files, Provenance, ReportFile, ReportTiming};
@@ -140,13 +140,12 @@ pub fn characteristic_csv(table: &CharacteristicTable) -> Result<String, csv::Er
         }
     }
     writer.write_record(head)?;
-    let text = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:.9e}"));
     for n in 0..table.varied.values.len() {
         let mut row = Vec::new();
         for c in &all {
-            row.push(text(c.values[n]));
+            row.push(maybe(c.values[n]));
             if !c.reference.is_empty() {
-                row.push(text(c.reference[n]));
+                row.push(maybe(c.reference[n]));
             }
         }
         writer.write_record(row)?;

@@ -40,7 +40,7 @@ pub fn orbit_csv(findings: &Findings) -> Result<String, csv::Error> {
                 c.load_kn[n][0],
                 c.load_kn[n][1],
             ];
-            let text = numbers.iter().map(|v| format!("{v:.9e}"));
+            let text = numbers.map(number);
             writer.write_record([c.bearing.clone(), c.operating_point.clone()].into_iter().chain(text))?;
         }
     }
@@ -60,7 +60,7 @@ pub fn sensitivity_csv(findings: &Findings) -> Result<String, csv::Error> {
                 let angle = 360.0 * i as f64 / field.len() as f64;
                 for (j, value) in row.iter().enumerate() {
                     let axial = c.width_mm * ((j as f64 + 0.5) / row.len() as f64 - 0.5);
-                    let numbers = [format!("{angle:.4}"), format!("{axial:.4}"), format!("{value:.9e}")];
+                    let numbers = [format!("{angle:.4}"), format!("{axial:.4}"), number(*value)];
                     let labels = [c.bearing.clone(), c.operating_point.clone(), surface.to_owned()];
                     writer.write_record(labels.into_iter().chain(numbers))?;
                 }
@@ -74,4 +74,27 @@ pub fn sensitivity_csv(findings: &Findings) -> Result<String, csv::Error> {
 pub(super) fn written(writer: csv::Writer<Vec<u8>>) -> Result<String, csv::Error> {
     let bytes = writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Head and rows as text.
+pub(super) fn table(
+    head: &[&str],
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(head)?;
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    written(writer)
+}
+
+/// A number with ten digits.
+pub(super) fn number(value: f64) -> String {
+    format!("{value:.9e}")
+}
+
+/// A number that may be missing.
+pub(super) fn maybe(value: Option<f64>) -> String {
+    value.map_or_else(String::new, number)
 }

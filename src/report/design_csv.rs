@@ -1,26 +1,9 @@
 //! What a report of a design says in tables, as CSV: `design.csv`, `limits.csv`, `gradient.csv`, `history.csv`.
 
-use super::csv_file::written;
+use super::csv_file::{maybe, number, table};
 use super::{AtBound, Report};
 
 type Table = Result<String, csv::Error>;
-
-fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Table {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(head)?;
-    for row in rows {
-        writer.write_record(row)?;
-    }
-    written(writer)
-}
-
-fn number(value: f64) -> String {
-    format!("{value:.9e}")
-}
-
-fn maybe(value: Option<f64>) -> String {
-    value.map_or_else(String::new, number)
-}
 
 /// All of them by name; those without rows are left out.
 pub fn design_csv(report: &Report) -> Result<Vec<(&'static str, String)>, csv::Error> {

@@ -4,7 +4,7 @@ use super::html::units;
 use super::svg::{
     FOUND, LIMIT, SECOND, SKY, START, THIRD, axis, half, legend_below, over_cycle, render, styled, tight_axis,
 };
-use super::{CharacteristicColumn, Curves, ParetoReport, Report};
+use super::{CharacteristicColumn, Curves, ParetoReport, Report, titled};
 use kuva::prelude::*;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -166,6 +166,11 @@ pub fn front(p: &ParetoReport, name: &str) -> String {
     render(plots, scaled_up(scaled_across(layout, &across), &up), name)
 }
 
+/// What an axis shows: a name with its unit as it is written in text.
+pub(super) fn labelled(name: &str, unit: &str) -> String {
+    titled(name, &units(unit))
+}
+
 /// Columns over the varied one: what was found as curves, the reference as points.
 pub fn characteristic(x: &CharacteristicColumn, columns: &[&CharacteristicColumn], name: &str) -> String {
     let plots: Vec<Plot> = columns
@@ -174,10 +179,7 @@ pub fn characteristic(x: &CharacteristicColumn, columns: &[&CharacteristicColumn
         .enumerate()
         .flat_map(|(k, (c, colour))| column(x, c, colour, (columns.len() > 1).then_some(k)))
         .collect();
-    let label = |c: &CharacteristicColumn| match c.unit.as_str() {
-        "1" => c.title.clone(),
-        unit => format!("{} [{}]", c.title, units(unit)),
-    };
+    let label = |c: &CharacteristicColumn| labelled(&c.title, &c.unit);
     let layout = half(styled(Layout::auto_from_plots(&plots)))
         .with_x_label(label(x))
         .with_y_label(columns.first().map_or_else(String::new, |c| label(c)));

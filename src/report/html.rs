@@ -199,17 +199,11 @@ pub(super) fn environment() -> Environment<'static> {
     environment.set_auto_escape_callback(|_| minijinja::AutoEscape::Html);
     environment.add_filter("sig", significant);
     environment.add_filter("sci", |v: f64| format!("{v:.1e}"));
-    environment.add_filter("units", units);
+    environment.add_filter("units", |text: String| units(&text));
     environment.add_filter("plain", plain);
     environment.add_filter("link", link);
-    environment.add_filter("typeset", |text: String| typeset(&text));
     environment.add_filter("words", |s: String| s.replace('-', " "));
     environment
-}
-
-/// A unit as it is written in text.
-pub(super) fn units(unit: &str) -> String {
-    unit.replace("um", "µm").replace("degC", "°C")
 }
 
 /// A number with four significant digits, or a dash for none.
@@ -234,8 +228,8 @@ fn link(name: &str) -> String {
     name.bytes().map(|b| if kept(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect()
 }
 
-/// A sentence with its units as they are written in text; words that only contain their letters stay.
-fn typeset(text: &str) -> String {
+/// A unit, or a sentence with units, as it is written in text; words that only contain their letters stay.
+pub(super) fn units(text: &str) -> String {
     let apart = |c: char| !c.is_alphanumeric();
     let word = |piece: &str| {
         let (word, end) = piece.split_at(piece.find(apart).unwrap_or(piece.len()));
@@ -257,7 +251,8 @@ mod tests {
     #[test]
     fn units_in_sentences_are_typeset_and_words_stay() {
         let text = "a minimum of 3 um (9 W per um), 5 mm3/h at 80 degC.";
-        assert_eq!(typeset(text), "a minimum of 3 µm (9 W per µm), 5 mm³/h at 80 °C.");
+        assert_eq!(units(text), "a minimum of 3 µm (9 W per µm), 5 mm³/h at 80 °C.");
+        assert_eq!(units("W/(um cm2)"), "W/(µm cm2)");
     }
 
     #[test]

@@ -133,6 +133,22 @@ pub fn write_folder(files: &[ReportFile], folder: &Path) -> std::io::Result<()> 
     files.iter().try_for_each(|f| std::fs::write(folder.join(&f.name), &f.text))
 }
 
+/// A value of one of the report's lists of words, as the report writes it: "almost-converged".
+pub fn word(of: impl serde::Serialize) -> String {
+    match serde_json::to_value(of) {
+        Ok(serde_json::Value::String(word)) => word,
+        _ => String::new(),
+    }
+}
+
+/// What a column or an axis is called: a title with its unit, if it has one.
+pub fn titled(title: &str, unit: &str) -> String {
+    match unit {
+        "" | "1" => title.to_owned(),
+        unit => format!("{title} [{unit}]"),
+    }
+}
+
 /// A number with four significant digits, plain if that is readable.
 pub fn short(value: f64) -> String {
     if value == 0.0 {

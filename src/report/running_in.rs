@@ -1,6 +1,6 @@
 //! Running-in: how losses and surfaces change over a programme.
 
-use super::csv_file::written;
+use super::csv_file::{maybe, number, written};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -277,7 +277,7 @@ pub fn running_in_csv(report: &RunningInReport) -> Result<String, csv::Error> {
                 m.wear_volume_mm3,
             ];
             let labels = [b.bearing.clone(), m.stage.clone()];
-            writer.write_record(labels.into_iter().chain(numbers.iter().map(|v| format!("{v:.9e}"))))?;
+            writer.write_record(labels.into_iter().chain(numbers.map(number)))?;
         }
     }
     written(writer)
@@ -293,7 +293,7 @@ pub fn wear_csv(report: &RunningInReport) -> Result<String, csv::Error> {
                 let angle = 360.0 * i as f64 / field.len() as f64;
                 for (j, depth) in row.iter().enumerate() {
                     let axial = b.width_mm * ((j as f64 + 0.5) / row.len() as f64 - 0.5);
-                    let numbers = [format!("{angle:.4}"), format!("{axial:.4}"), format!("{depth:.9e}")];
+                    let numbers = [format!("{angle:.4}"), format!("{axial:.4}"), number(*depth)];
                     let labels = [b.bearing.clone(), surface.to_owned()];
                     writer.write_record(labels.into_iter().chain(numbers))?;
                 }
@@ -307,14 +307,13 @@ pub fn wear_csv(report: &RunningInReport) -> Result<String, csv::Error> {
 pub fn stribeck_csv(report: &RunningInReport) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(["bearing", "speed_rpm", "friction_new", "friction_run_in"])?;
-    let text = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:.9e}"));
     for b in &report.bearings {
         for p in &b.stribeck {
             writer.write_record([
                 b.bearing.clone(),
                 format!("{:.4}", p.speed_rpm),
-                text(p.new),
-                text(p.run_in),
+                maybe(p.new),
+                maybe(p.run_in),
             ])?;
         }
     }

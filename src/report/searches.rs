@@ -1,5 +1,7 @@
 //! Several searches side by side: from different starts, by different methods.
 
+use super::csv_file::written;
+use super::word;
 use crate::gradient::EngineName;
 use crate::optimise::{Method, Outcome};
 use schemars::JsonSchema;
@@ -262,12 +264,10 @@ pub fn pareto_csv(front: &ParetoReport) -> Result<String, csv::Error> {
     writer.write_record(&head)?;
     let number = |v: Option<f64>| v.map_or_else(String::new, |v| v.to_string());
     for p in &front.points {
-        let status = serde_json::to_value(p.status).ok().and_then(|v| v.as_str().map(str::to_owned));
         let mut row = vec![p.limit.to_string(), number(p.loss_w), number(p.price_w_per_unit)];
-        row.push(status.unwrap_or_default());
+        row.push(word(p.status));
         row.extend(p.design.iter().map(f64::to_string));
         writer.write_record(&row)?;
     }
-    let bytes = writer.into_inner().map_err(|e| e.into_error())?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    written(writer)
 }

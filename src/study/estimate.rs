@@ -54,7 +54,10 @@ pub struct Estimate {
 /// The estimate of a study, whose results of before are in the store.
 pub fn estimate(study: &Study, store: &dyn Store) -> Estimate {
     let cases = study.bearings.len() * study.points.len();
-    let (work, cycles, most) = amount(study, store);
+    let new: Option<Vec<&RunPlan>> =
+        study.experiments.as_ref().map(|e| e.runs.iter().filter(|r| !known(r, e.each, store)).collect());
+    let kept = new.as_ref().map(|new| study.experiments().count() - new.len());
+    let (work, cycles, most) = amount(study, new.as_deref().unwrap_or_default());
     let cycle_s = measured(study);
     // Bearings, operating points and runs share the cores.
     let width = rayon::current_num_threads() as f64;
@@ -70,7 +73,7 @@ pub fn estimate(study: &Study, store: &dyn Store) -> Estimate {
         cycles,
         most_cycles: most,
         memory_mb: held * 1e-6,
-        kept: study.experiments.as_ref().map(|e| e.runs.iter().filter(|r| known(r, e.each, store)).count()),
+        kept,
         cycle_s,
         seconds,
     }
@@ -80,8 +83,8 @@ fn known(run: &RunPlan, each: EachName, store: &dyn Store) -> bool {
     store.recall(&super::experiment::kept_name(each, &run.study.hash)).is_some()
 }
 
-/// Work in words, cycles expected, cycles at most.
-fn amount(study: &Study, store: &dyn Store) -> (String, f64, Option<f64>) {
+/// Work in words, cycles expected, cycles at most; of experiments the new runs count.
+fn amount(study: &Study, new: &[&RunPlan]) -> (String, f64, Option<f64>) {
     let cases = (study.bearings.len() * study.points.len()) as f64;
     let parameters = study.parameters.len() as f64;
     if let Some(plan) = &study.characteristic {
@@ -107,8 +110,7 @@ fn amount(study: &Study, store: &dyn Store) -> (String, f64, Option<f64>) {
         );
     }
     if let Some(plan) = &study.experiments {
-        let new = plan.runs.iter().filter(|r| !known(r, plan.each, store));
-        let (mut cycles, mut most, mut count) = (0.0, 0.0, 0);
+        let (mut cycles, mut most) = (0.0, 0.0);
         let own = (study.cells(0) * study.orbit.steps) as f64;
         for run in new {
             let size = (run.study.cells(0) * run.study.orbit.steps) as f64 / own;
@@ -118,10 +120,9 @@ fn amount(study: &Study, store: &dyn Store) -> (String, f64, Option<f64>) {
             };
             cycles += one * size;
             most += limit.unwrap_or(one) * size;
-            count += 1;
         }
         let limit = (plan.each == EachName::Search).then_some(most);
-        return (format!("{count} of {} runs", plan.runs.len()), cycles, limit);
+        return (format!("{} of {} runs", new.len(), plan.runs.len()), cycles, limit);
     }
     let (cycles, most) = searched(study);
     let mut words = vec![format!("a search over {parameters} parameters")];

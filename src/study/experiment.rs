@@ -10,7 +10,7 @@ use super::run::{assumptions, provenance, run_saved, simulate};
 use crate::optimise::Outcome;
 use crate::report::{
     EXPERIMENTS_FORMAT, ExperimentRun, Experiments, ExperimentsStatus, FactorReport, Report, ReportTiming,
-    ResponseReport, effects, experiments_headline, refinements,
+    ResponseReport, effects, experiments_headline, refinements, word,
 };
 use crate::run::{Event, RunContext, Silent, Store, Within};
 use rayon::prelude::*;
@@ -42,7 +42,7 @@ pub fn experiment<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Sto
         }
         row(k, run, found, responses.len())
     };
-    // One by one where the cores are taken: a search uses them itself.
+    // Handed out one by one: runs differ much in length.
     let runs: Vec<ExperimentRun> = plan.runs.par_iter().enumerate().with_max_len(1).map(one).collect();
     let status = match () {
         () if runs.iter().any(|r| r.status.is_none()) => ExperimentsStatus::Cancelled,
@@ -79,10 +79,6 @@ pub fn experiment<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Sto
     Some(found)
 }
 
-fn word(of: impl Serialize) -> String {
-    serde_json::to_value(of).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
-}
-
 /// Where what was found of a study is kept.
 pub(super) fn kept_name(each: EachName, hash: &str) -> String {
     format!("run-{}-{}-{hash}", word(each), env!("CARGO_PKG_VERSION"))
@@ -115,11 +111,8 @@ fn kept<'r>(
 }
 
 fn row(k: usize, run: &RunPlan, found: Option<Kept>, count: usize) -> ExperimentRun {
-    let found = found.map(|f| (f.status, f.failure, f.feasible, f.responses));
-    let (status, failure, feasible, mut responses) = match found {
-        Some((status, failure, feasible, responses)) => (Some(status), failure, feasible, responses),
-        None => (None, None, None, Vec::new()),
-    };
+    let (status, failure, feasible, mut responses) =
+        found.map_or_else(Default::default, |f| (Some(f.status), f.failure, f.feasible, f.responses));
     // A run without an answer has a place for every response all the same.
     responses.resize(count, None);
     ExperimentRun {

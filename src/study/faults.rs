@@ -1,6 +1,7 @@
 //! Mistakes of a study file: all of them, each with its place and what to do.
 
 use super::Given;
+use super::place::find;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
@@ -45,7 +46,7 @@ impl Faults {
 
     /// What stands in the document at a path.
     pub fn raw(&self, path: &str) -> Option<&Value> {
-        self.raw.pointer(&pointer(path))
+        find(&self.raw, path)
     }
 
     /// Notes a mistake.
@@ -157,11 +158,6 @@ macro_rules! refuse_others {
     }};
 }
 pub(super) use refuse_others;
-
-/// JSON pointer of a path like `parameters[2].lower`.
-pub(super) fn pointer(path: &str) -> String {
-    format!("/{}", path.replace(['.', '['], "/").replace(']', ""))
-}
 
 /// Path of a key below another.
 pub(super) fn join(path: &str, key: &str) -> String {

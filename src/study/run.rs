@@ -5,16 +5,16 @@ use super::build::{Plan, plan};
 use super::check::Study;
 use super::choices::choose;
 use super::evidence::gradient;
-use super::faults::pointer;
 use super::limits::{constraints, linear, unknown_constraints};
 use super::methods::{methods, references};
 use super::pareto::front;
+use super::place::find;
 use super::searches::{Searched, rivals, searches, simulated};
 use super::{observe, robust, run_in};
 use crate::optimise::{Minimum, Outcome, curvature};
 use crate::report::{
     Assumption, ChoicesReport, CostReport, Curves, Findings, KktReport, ObjectiveReport, OutcomeReport,
-    Provenance, REPORT_FORMAT, Report, ReportTiming, headline,
+    Provenance, REPORT_FORMAT, Report, ReportTiming, headline, word,
 };
 use crate::run::{Cancel, Cost, Event, NoStore, RunContext, Store};
 use std::time::Instant;
@@ -101,7 +101,7 @@ fn answered<'r>(
     let report = &mut findings.report;
     if context.cancel.is_cancelled() && report.outcome.status != Outcome::Cancelled {
         // The search had ended, but not everything that the study asks for beside it is there.
-        let ended = format!("{:?}", report.outcome.status).to_lowercase();
+        let ended = word(report.outcome.status).replace('-', " ");
         report.outcome.status = Outcome::Cancelled;
         report.outcome.advice = format!(
             "Stopped on request before everything was there that the study asks for; the search itself had ended ({ended}). The \
@@ -242,7 +242,7 @@ pub(super) fn assumptions(study: &Study) -> Vec<Assumption> {
     let map = study.file.assumptions.value().cloned().unwrap_or_default();
     map.into_iter()
         .map(|(key, reason)| {
-            let value = values.pointer(&pointer(&key)).map_or_else(String::new, written);
+            let value = find(&values, &key).map_or_else(String::new, written);
             Assumption { key, value, reason }
         })
         .collect()

@@ -1,11 +1,12 @@
 //! Checks of the sections that stand for themselves: orbit, objective, gradient, optimiser, assumptions.
 
 use super::Given;
-use super::faults::{Faults, join, pointer, without_nulls};
+use super::faults::{Faults, join, without_nulls};
 use super::file::{
     AggregateName, GradientFile, ObjectiveFile, OperatingPointFile, OptimiserFile, OrbitFile, SchemeName,
     StudyFile,
 };
+use super::place::find;
 use super::plans::OperatingPoint;
 use super::searches::SearchPlan;
 use crate::gradient::EngineName;
@@ -185,7 +186,7 @@ pub(super) fn assumptions(file: &mut StudyFile, faults: &mut Faults) {
     let Some(map) = faults.get(&file.assumptions, "assumptions") else { return };
     let values = without_nulls(serde_json::to_value(&*file).unwrap_or_default());
     for path in map.keys() {
-        if values.pointer(&pointer(path)).is_none() && faults.raw(path).is_none() {
+        if find(&values, path).is_none() && faults.raw(path).is_none() {
             faults.add(&format!("assumptions.{path}"), format!("there is no key '{path}' in this study"));
         }
     }

@@ -7,7 +7,7 @@ use super::{characterise, compare, experiment, run_saved, simulate};
 use crate::optimise::EvaluationError;
 use crate::report::{
     Characteristic, Comparison, ExpectedReport, Experiments, Findings, ReportFile, characteristic_files,
-    comparison_files, experiments_files, files,
+    comparison_files, experiments_files, files, word,
 };
 use crate::run::{RunContext, Store};
 
@@ -77,9 +77,6 @@ fn asked<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Store) -> An
 impl Answer {
     /// How it ended: an [`Outcome`] for designs, "complete", "incomplete" or "cancelled" for everything else.
     pub fn status(&self) -> String {
-        fn word(status: impl serde::Serialize) -> String {
-            serde_json::to_value(status).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
-        }
         match self {
             Self::Design(found) => word(found.report.outcome.status),
             Self::Characteristic(found) => word(found.status),

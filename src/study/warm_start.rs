@@ -13,10 +13,10 @@ impl Study {
         let found = self.start_at(report)?;
         // Figures are those of the study's own starts.
         self.expected.clear();
-        if let Some(choices) = &mut self.choices {
-            for (_, variant) in &mut choices.variants {
-                variant.start_at(report)?;
-            }
+        let choices = self.choices.iter_mut().flat_map(|c| c.variants.iter_mut().map(|(_, study)| study));
+        let runs = self.experiments.iter_mut().flat_map(|e| e.runs.iter_mut().map(|run| &mut run.study));
+        for variant in choices.chain(runs) {
+            variant.start_at(report)?;
         }
         Ok((self, found))
     }

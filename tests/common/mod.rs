@@ -106,6 +106,13 @@ pub fn merged(text: &str) -> String {
     all.skip(1).map(|l| format!("{l}\n")).collect()
 }
 
+/// The program, without colours and for five minutes at most.
+pub fn stribeck() -> assert_cmd::Command {
+    let mut command = assert_cmd::Command::cargo_bin("stribeck").unwrap();
+    command.timeout(std::time::Duration::from_secs(300)).env("NO_COLOR", "1");
+    command
+}
+
 /// Sections that make the main study coarse and quick.
 pub const COARSE: &str =
     "[film]\ncells_around = 36\ncells_across_half = 4\n[orbit]\nsteps_per_cycle = 240\n[oil]";

@@ -2,22 +2,9 @@
 
 use super::{Comparison, ProvenCase, ProvenQuantity};
 use crate::gradient::TaylorRow;
-use crate::report::csv_file::written;
+use crate::report::csv_file::{number, table};
 
 type Table = Result<String, csv::Error>;
-
-fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Table {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(head)?;
-    for row in rows {
-        writer.write_record(row)?;
-    }
-    written(writer)
-}
-
-fn number(value: f64) -> String {
-    format!("{value:.9e}")
-}
 
 /// All files but the wall times, by name.
 pub fn comparison_csv(found: &Comparison) -> Result<Vec<(&'static str, String)>, csv::Error> {

@@ -1,7 +1,7 @@
 //! Figures of experiments: responses over the factors of numbers.
 
 use super::{ExperimentRun, Experiments};
-use crate::report::html::units;
+use crate::report::figures::labelled;
 use crate::report::svg::{FOUND, LIMIT, SECOND, SKY, START, THIRD, axis_around, half, render, styled};
 use kuva::prelude::*;
 
@@ -68,11 +68,4 @@ pub fn response(found: &Experiments, factor: usize, response: usize, name: &str)
         .with_y_axis_max(high)
         .with_y_tick_step(step_y);
     Some(render(plots, layout, name))
-}
-
-fn labelled(name: &str, unit: &str) -> String {
-    match unit {
-        "" | "1" => name.to_owned(),
-        unit => format!("{name} [{}]", units(unit)),
-    }
 }

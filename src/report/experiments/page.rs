@@ -1,8 +1,8 @@
 //! The page and the files of experiments.
 
-use super::super::csv_file::written;
+use super::super::csv_file::{maybe, written};
 use super::super::html::{STYLE, environment};
-use super::super::{Files, ReportFile};
+use super::super::{Files, ReportFile, titled, word};
 use super::{Experiments, figures};
 use minijinja::context;
 use minijinja::value::{Serde, Value};
@@ -47,10 +47,7 @@ pub fn experiments_html(found: &Experiments) -> Result<String, minijinja::Error>
 /// The runs as text: factors, outcome, responses.
 pub fn experiments_csv(found: &Experiments) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let factor = |f: &super::FactorReport| match f.unit.as_str() {
-        "" => f.name.clone(),
-        unit => format!("{} [{unit}]", f.name),
-    };
+    let factor = |f: &super::FactorReport| titled(&f.name, &f.unit);
     let head = std::iter::once("run".to_owned()).chain(found.factors.iter().map(factor));
     let head = head.chain(["status", "feasible", "study_hash"].map(str::to_owned));
     writer.write_record(head.chain(found.responses.iter().map(|r| r.key.clone())))?;
@@ -59,11 +56,9 @@ pub fn experiments_csv(found: &Experiments) -> Result<String, csv::Error> {
             |(text, number): (&String, &Option<f64>)| number.map_or_else(|| text.clone(), |v| v.to_string());
         let row =
             std::iter::once(run.number.to_string()).chain(run.levels.iter().zip(&run.numbers).map(level));
-        let status = serde_json::to_value(run.status).ok().and_then(|v| v.as_str().map(str::to_owned));
         let feasible = run.feasible.map_or_else(String::new, |f| f.to_string());
-        let row = row.chain([status.unwrap_or_default(), feasible, run.study_hash.clone()]);
-        let number = |v: &Option<f64>| v.map_or_else(String::new, |v| format!("{v:.9e}"));
-        writer.write_record(row.chain(run.responses.iter().map(number)))?;
+        let row = row.chain([word(run.status), feasible, run.study_hash.clone()]);
+        writer.write_record(row.chain(run.responses.iter().copied().map(maybe)))?;
     }
     written(writer)
 }

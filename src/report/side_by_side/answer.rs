@@ -2,7 +2,7 @@
 
 use super::{DesignPair, LeafComparison, LimitSide, LimitState, SideBySide};
 use crate::optimise::Outcome;
-use crate::report::{Report, short};
+use crate::report::{Report, short, word};
 
 /// Relative difference below which two numbers are called the same: what the tolerance of a search leaves open.
 const SAME: f64 = 1e-5;
@@ -25,10 +25,7 @@ pub fn of_designs(a: &Report, b: &Report, pair: &DesignPair) -> Vec<String> {
 
 /// An outcome as one reads it.
 pub fn words(status: Outcome) -> String {
-    match serde_json::to_value(status) {
-        Ok(serde_json::Value::String(name)) => name.replace('-', " "),
-        _ => String::new(),
-    }
+    word(status).replace('-', " ")
 }
 
 fn same(a: f64, b: f64) -> bool {

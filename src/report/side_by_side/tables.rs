@@ -1,7 +1,7 @@
 //! Tables of two characteristics, paired by name; their rows are paired by the varied quantity, their columns by key.
 
 use super::paired;
-use crate::report::{CharacteristicColumn, CharacteristicTable};
+use crate::report::{CharacteristicColumn, CharacteristicTable, titled};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -41,7 +41,7 @@ pub struct ColumnPair {
 impl TablePair {
     /// The varied quantity with its unit.
     pub fn label(&self) -> String {
-        labelled(&self.varied, &self.unit)
+        titled(&self.varied, &self.unit)
     }
 }
 
@@ -53,12 +53,8 @@ impl ColumnPair {
 
     /// Title with unit.
     pub fn label(&self) -> String {
-        labelled(&self.title, &self.unit)
+        titled(&self.title, &self.unit)
     }
-}
-
-fn labelled(title: &str, unit: &str) -> String {
-    if unit == "1" { title.to_owned() } else { format!("{title} [{unit}]") }
 }
 
 /// A row: its number, and the varied quantity as text.
