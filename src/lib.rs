@@ -28,6 +28,7 @@
 //! ```text
 //! study.toml --units, checks--> Study --> DesignProblem (one JournalBearing per bearing and operating point)
 //!     (or, for a study that tabulates: equilibrium after equilibrium --> Characteristic;
+//!      for one with experiments: the study with every combination of levels --> Experiments;
 //!      for one that compares: start design --> five gradient engines and their proof --> Comparison)
 //!     --> SQP: design --> settled orbit --> values;  accepted design --> gradient engine --> slopes --> QP --> step
 //!     --> Report (JSON, HTML, CSV)

@@ -13,7 +13,8 @@ fn coarse(sections: &str) -> Study {
         .unwrap_or_else(|e| panic!("{e}: {:#?}", e.faults))
 }
 
-/// [`crate::common::COARSE`] without its last section, and a short comparison.
+/// [`crate::common::COARSE`] without its last section and with half its steps (agreement and counts of engines are those of any discrete
+/// cycle, fine or coarse), and a short comparison.
 const COARSE: &str = "[film]\ncells_around = 36\ncells_across_half = 4\n[orbit]\nsteps_per_cycle = 120\n\
                       [comparison]\nperturbations = [1e-4, 1e-5, 1e-6]\nparameter_counts = [1, 4]\n";
 
@@ -56,6 +57,18 @@ fn the_engines_agree_and_the_cost_of_the_exact_ones_hardly_grows() {
         assert!(s_adj > s.parameters as f64 && s_tra > s.parameters as f64, "{s:?}");
         println!("{} parameters: {s_adj:.1} counted, {:.1} timed", s.parameters, t.adj.unwrap());
     }
+}
+
+/// That a rerun writes the same bytes is shown with all other kinds of report (`reports`).
+#[test]
+fn a_comparison_without_cen_has_no_speed_ups_and_is_read_back_as_it_was_written() {
+    let found =
+        compared(&coarse("[comparison]\nengines = [\"FW\", \"TRA\", \"ADJ\"]\nperturbations = [1e-5]\n"));
+    assert!(found.timing.seconds > 0.0 && found.timing.cases.len() == 1);
+    assert!(found.cases[0].speed_ups.is_empty(), "there is no speed-up without CEN");
+    let text = |c: &Comparison| serde_json::to_string_pretty(c).unwrap();
+    let read: Comparison = serde_json::from_str(&text(&found)).unwrap();
+    assert_eq!(text(&read), text(&found));
 }
 
 #[test]

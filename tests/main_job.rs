@@ -43,6 +43,7 @@ fn the_main_study_converges_within_its_limits() {
     assert!(end.gradient.unwrap().rows.iter().all(|r| r.verdict.starts_with("exact")));
 }
 
+/// On the coarse mesh: that searches meet, and what a limit costs, is a matter of the optimiser and the gradient, not of the mesh.
 #[test]
 fn three_starts_lead_to_the_same_optimum() {
     let starts = [

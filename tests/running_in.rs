@@ -193,6 +193,7 @@ fn a_study_runs_its_design_in_and_reports_it() {
 }
 
 /// The main study on a coarse mesh with a leaning journal and a programme of one hour; clearance, width and what is added vary.
+/// Several tests halve its steps: limits, programmes and ends of stages are kept by the same march on any step.
 fn running_in_study(running_in: &str, more: &str, changes: &[(&str, &str)]) -> Study {
     let stage = "[[running_in.stages]]\nname = \"rated\"\nduration = \"1 h\"\nspeed = \"1500 rpm\"\n";
     let with = format!("[running_in]\n{running_in}{stage}{COARSE}");
