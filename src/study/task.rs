@@ -75,7 +75,7 @@ fn asked<'r>(study: &Study, context: RunContext<'r>, store: &'r dyn Store) -> An
 }
 
 impl Answer {
-    /// How it ended: an [`Outcome`] for designs, "complete", "incomplete" or "cancelled" for everything else.
+    /// How it ended: an [`crate::optimise::Outcome`] for designs, "complete", "incomplete" or "cancelled" for everything else.
     pub fn status(&self) -> String {
         match self {
             Self::Design(found) => word(found.report.outcome.status),
